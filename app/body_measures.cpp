@@ -20,13 +20,13 @@ namespace {
 /// that the volume error has no part from the summation.
 double volume_of(const Mesh& mesh) {
     long double sum = 0.0;
-    for (const ElementId e : mesh.elements()) sum += topology::rest_volume(mesh, e);
+    for (const CellId e : mesh.elements()) sum += topology::rest_volume(mesh, e);
     return static_cast<double>(sum);
 }
 
 bool is_all_tetrahedra(const Mesh& mesh) {
     bool is_all = true;
-    for (const ElementId e : mesh.elements()) is_all &= mesh.kind(e) == CellKind::tetrahedron;
+    for (const CellId e : mesh.elements()) is_all &= mesh.kind(e) == CellKind::tetrahedron;
     return is_all;
 }
 
@@ -66,7 +66,7 @@ FragmentCounts counts_of(const Mesh& mesh, const FragmentMesh& fragments) {
     for (const ElementId e : fragments.elements())
         counts.smallest_share = std::min(counts.smallest_share, fragments.share(e));
     std::vector<bool> has_material(fragments.node_capacity(), false);
-    for (const NodeId n : mesh.nodes())
+    for (const VertexId n : mesh.nodes())
         if (const topology::Embedding at = fragments.embedding(mesh, n); at.count == 1)
             has_material[at.nodes[0].index()] = true;
     for (const NodeId n : fragments.nodes()) counts.ghost_nodes += has_material[n.index()] ? 0 : 1;
@@ -93,7 +93,7 @@ std::vector<Piece> pieces_of(const Mesh& mesh) {
     const topology::Components components = topology::components(mesh);
     std::vector<Piece> pieces(static_cast<std::size_t>(components.count));
     std::vector<long double> volumes(pieces.size(), 0.0);
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         const auto p = static_cast<std::size_t>(components.of_element[e.index()]);
         volumes[p] += topology::rest_volume(mesh, e);
         ++pieces[p].elements;

@@ -30,7 +30,7 @@ using topology::Mesh;
 namespace {
 
 /// Returns the volume at rest of an element that is no longer in the mesh, m3.
-double volume_of(const topology::ElementRecord& removed, const Mesh& mesh) {
+double volume_of(const topology::CellRecord& removed, const Mesh& mesh) {
     std::array<Vec3, topology::max_corners> x;
     const std::size_t size = std::size(removed.corners);
     for (std::size_t k = 0; k < size; ++k) x[k] = mesh.rest_position(removed.corners[k]);
@@ -42,7 +42,7 @@ class FacesBefore {
   public:
     explicit FacesBefore(const Mesh& mesh)
         : rows_(mesh.element_capacity()), num_nodes_(mesh.node_capacity()) {
-        for (const ElementId e : mesh.elements()) {
+        for (const CellId e : mesh.elements()) {
             if (mesh.kind(e) != CellKind::tetrahedron) continue;
             Row& row = rows_[e.index()];
             for (std::size_t k = 0; k < 4; ++k) row.corners[k] = mesh.corners(e)[k];
@@ -56,8 +56,8 @@ class FacesBefore {
     std::vector<FaceId> opened_by(const topology::ChangeSet& changes, const Mesh& mesh) const {
         std::vector<FaceId> opened;
         for (const FaceId f : topology::boundary_faces(mesh)) {
-            if (mesh.kind(f.element) != CellKind::tetrahedron) continue;
-            ElementId root = f.element;
+            if (mesh.kind(f.cell) != CellKind::tetrahedron) continue;
+            CellId root = f.cell;
             while (root.index() >= rows_.size())
                 root = changes.elements_added[root.index() - rows_.size()].parent;
             const Row& row = rows_[root.index()];
@@ -73,7 +73,7 @@ class FacesBefore {
 
   private:
     struct Row {
-        std::array<NodeId, 4> corners;
+        std::array<VertexId, 4> corners;
         unsigned joined = 0;  // a bit for each face that was shared
     };
 
@@ -84,13 +84,13 @@ class FacesBefore {
     }
 
     /// Returns the old corners between which the node was added, as one bit each.
-    unsigned support(NodeId n, const Row& row, const topology::ChangeSet& changes) const {
+    unsigned support(VertexId n, const Row& row, const topology::ChangeSet& changes) const {
         unsigned bits = 0;
         if (n.index() < num_nodes_) {
             for (std::size_t k = 0; k < 4; ++k) bits |= (row.corners[k] == n ? 1u : 0u) << k;
             return bits;
         }
-        const topology::NodeRecord& record = changes.nodes_added[n.index() - num_nodes_];
+        const topology::VertexRecord& record = changes.nodes_added[n.index() - num_nodes_];
         for (int s = 0; s < record.num_sources; ++s)
             bits |= support(record.sources[static_cast<std::size_t>(s)].node, row, changes);
         return bits;
@@ -244,7 +244,7 @@ class CountingCutter {
         const Pose pose{Eigen::Quaterniond::Identity(), removal.at};
         const auto changes = cutter_.carve(mesh_, removal.shape, pose, pose).changes;
         long double removed = 0.0;
-        for (const topology::ElementRecord& record : changes.elements_removed)
+        for (const topology::CellRecord& record : changes.elements_removed)
             removed += volume_of(record, mesh_);
         counts_.volume_removed = static_cast<double>(removed);
         record_changes(changes);
@@ -279,12 +279,12 @@ class CountingCutter {
     void separate(AreParted are_separated) {
         std::vector<FaceId> faces;
         const auto rest = mesh_.rest_positions();
-        for (const ElementId e : mesh_.elements()) {
+        for (const CellId e : mesh_.elements()) {
             const Vec3 centre = TissueMotion::centre(mesh_, e, rest);
             for (int f = 0; f < mesh_.num_faces(e); ++f) {
                 const FaceId face{e, f}, other = mesh_.neighbor(face);
                 if (face < other &&
-                    are_separated(centre, TissueMotion::centre(mesh_, other.element, rest)))
+                    are_separated(centre, TissueMotion::centre(mesh_, other.cell, rest)))
                     faces.push_back(face);
             }
         }
@@ -293,9 +293,9 @@ class CountingCutter {
 
     void open(const std::vector<FaceId>& faces) {
         const auto changes = cutting::execute({{}, faces}, mesh_);
-        std::set<ElementId> crossed;
+        std::set<CellId> crossed;
         for (const topology::FacePair& pair : changes.faces_opened) {
-            crossed.insert({pair.a.element, pair.b.element});
+            crossed.insert({pair.a.cell, pair.b.cell});
             remember(pair.a);
             counts_.cut_area += topology::rest_area(mesh_, pair.a);
         }
@@ -310,7 +310,7 @@ class CountingCutter {
         counts_.elements_added += changes.elements_added.size();
         counts_.elements_removed += changes.elements_removed.size();
         counts_.nodes_added += changes.nodes_added.size();
-        for (const topology::NodeRecord& record : changes.nodes_added)
+        for (const topology::VertexRecord& record : changes.nodes_added)
             counts_.nodes_duplicated += record.num_sources == 1;
     }
 

@@ -32,17 +32,31 @@ struct Id {
     constexpr auto operator<=>(const Id&) const = default;
 };
 
+/// A vertex and a cell of the material: the mesh that is cut.
+using VertexId = Id<struct VertexTag>;
+using CellId = Id<struct CellTag>;
+/// A carrier: a cell as it was before any cut.
+using CarrierId = Id<struct CarrierTag>;
+/// A node and an element of the physics: the mesh that moves.
 using NodeId = Id<struct NodeTag>;
 using ElementId = Id<struct ElementTag>;
 
-/// One face of an element. Local face numbers are those of cell_kind.h.
+/// Returns the id of another kind with the same number, where both are numbered alike.
+template <class To, class Tag>
+constexpr To with_number_of(Id<Tag> id) {
+    To same;
+    same.value = id.value;
+    return same;
+}
+
+/// One face of a cell. Local face numbers are those of cell_kind.h.
 struct FaceId {
-    ElementId element;
+    CellId cell;
     std::int32_t face = -1;
 
-    constexpr bool is_valid() const { return element.is_valid(); }
+    constexpr bool is_valid() const { return cell.is_valid(); }
     constexpr auto operator<=>(const FaceId&) const = default;
-    static void archive(auto& ar, auto& self) { ar(self.element, self.face); }
+    static void archive(auto& ar, auto& self) { ar(self.cell, self.face); }
 };
 
 }  // namespace incise

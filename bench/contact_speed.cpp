@@ -26,10 +26,10 @@ constexpr double pressed_in = 0.1;   // s
 /// Returns what glues the bottom and the top of the block to plates, of which one presses.
 std::vector<physics::Constraint> plates(const topology::Mesh& mesh) {
     const auto nodes_at = [&](double z) {
-        std::vector<NodeId> nodes;
-        for (const NodeId n : mesh.nodes())
+        std::vector<VertexId> nodes;
+        for (const VertexId n : mesh.nodes())
             if (mesh.rest_position(n).z() == z) nodes.push_back(n);
-        return physics::NodeSet(nodes);
+        return physics::VertexSet(nodes);
     };
     physics::Constraint bottom{.name = "bottom"}, top{.name = "top"};
     bottom.nodes = nodes_at(0.0);
@@ -67,7 +67,7 @@ ContactRate measure_contact(std::size_t num_elements, double friction, double se
     rate.search = 1e3 * best_time(seconds, [&] {
                       contact::Contact(settings, side / n).follow(model, surface);
                   });
-    std::set<NodeId> nodes;
+    std::set<VertexId> nodes;
     for (const auto& triangle : surface.triangles()) nodes.insert(triangle.begin(), triangle.end());
     rate.surface_nodes = nodes.size();
 

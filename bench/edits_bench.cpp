@@ -28,7 +28,7 @@ void measure(benchmark::State& state, Edit edit) {
         topology::ChangeSet changes;
         {
             topology::MeshEdit transaction(mesh);
-            for (std::size_t i = 0; i < batch; ++i) edit(mesh, transaction, ElementId(first + i));
+            for (std::size_t i = 0; i < batch; ++i) edit(mesh, transaction, CellId(first + i));
             changes = transaction.commit();
         }
         const auto done = model.apply(mesh, changes);
@@ -49,12 +49,12 @@ Eigen::AlignedBox3d mesh_box(const topology::Mesh& mesh) {
 
 void remove(benchmark::State& state) {
     measure(state,
-            [](const topology::Mesh&, topology::MeshEdit& edit, ElementId e) { edit.remove(e); });
+            [](const topology::Mesh&, topology::MeshEdit& edit, CellId e) { edit.remove(e); });
 }
 BENCHMARK(remove)->Arg(20'000)->Arg(100'000)->Arg(500'000);
 
 /// Opens the first face of the element that is not on the boundary.
-void open_a_face(const topology::Mesh& mesh, topology::MeshEdit& edit, ElementId e) {
+void open_a_face(const topology::Mesh& mesh, topology::MeshEdit& edit, CellId e) {
     for (int f = 0; f < mesh.num_faces(e); ++f)
         if (mesh.neighbor({e, f}).is_valid()) return edit.open({e, f});
 }
@@ -72,7 +72,7 @@ void recorded_step(benchmark::State& state, topology::Mesh mesh,
     for (auto _ : state) {
         model.integrate(0.0, dt);
         topology::MeshEdit edit(mesh);
-        open_a_face(mesh, edit, ElementId(next++ % mesh.element_capacity()));
+        open_a_face(mesh, edit, CellId(next++ % mesh.element_capacity()));
         const auto changes = edit.commit();
         model.compute_totals_and_forces();
         benchmark::DoNotOptimize(model.totals());

@@ -10,10 +10,10 @@ namespace {
 
 using topology::Mesh;
 
-std::vector<NodeId> nodes_at_height(const Mesh& mesh, double z) {
-    std::vector<NodeId> nodes;
+std::vector<VertexId> nodes_at_height(const Mesh& mesh, double z) {
+    std::vector<VertexId> nodes;
     for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
-        if (mesh.rest_position(NodeId(n)).z() == z) nodes.emplace_back(n);
+        if (mesh.rest_position(VertexId(n)).z() == z) nodes.emplace_back(n);
     return nodes;
 }
 
@@ -28,8 +28,8 @@ std::vector<FaceId> top_of(const Mesh& mesh) {
     return top;
 }
 
-std::vector<ElementId> elements_of(const Mesh& mesh) {
-    std::vector<ElementId> elements;
+std::vector<CellId> elements_of(const Mesh& mesh) {
+    std::vector<CellId> elements;
     for (std::size_t e = 0; e < mesh.element_capacity(); ++e) elements.emplace_back(e);
     return elements;
 }
@@ -39,7 +39,7 @@ physics::BoundaryConditions held(const Mesh& mesh) {
     physics::BoundaryConditions s{
         .gravity = {0, 0, -0.1}, .damping = 1.0, .constraints = {}, .loads = {}};
     s.constraints.push_back({.name = "floor",
-                             .nodes = physics::NodeSet(nodes_at_height(mesh, 0.0)),
+                             .nodes = physics::VertexSet(nodes_at_height(mesh, 0.0)),
                              .displacement = {},
                              .angle = {}});
     return s;
@@ -49,7 +49,7 @@ physics::BoundaryConditions held(const Mesh& mesh) {
 physics::BoundaryConditions turned_and_loaded(const Mesh& mesh) {
     physics::BoundaryConditions s = held(mesh);
     s.constraints.push_back({.name = "lid",
-                             .nodes = physics::NodeSet(nodes_at_height(mesh, 1.0)),
+                             .nodes = physics::VertexSet(nodes_at_height(mesh, 1.0)),
                              .displacement = {},
                              .angle = physics::TimeCurve<double>({{0.0, 0.0}, {1.0, 1e-3}}),
                              .point = {0.5, 0.5, 1.0}});

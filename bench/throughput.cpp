@@ -244,7 +244,7 @@ EditRate measure_removal(CutCube& cube) {
     return time_tool("remove", "element removed", cube, [&](CutCube& c, int step) {
         topology::MeshEdit edit(c.mesh);
         for (std::size_t i = 0; i < batch; ++i)
-            edit.remove(ElementId(static_cast<std::size_t>(step + 1) * stride - i - 1));
+            edit.remove(CellId(static_cast<std::size_t>(step + 1) * stride - i - 1));
         c.follow(edit.commit());
         return batch;
     });
@@ -295,7 +295,7 @@ void measure_edits(std::size_t num_elements, const Measured& measured, double se
         std::mt19937_64 random(1);
         topology::MeshEdit edit(halved.mesh);
         for (std::size_t i = 0; i < halved.mesh.element_capacity(); ++i)
-            if (random() % 2 == 0) edit.remove(ElementId(i));
+            if (random() % 2 == 0) edit.remove(CellId(i));
         halved.follow(edit.commit());
     });
 }

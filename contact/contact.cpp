@@ -176,7 +176,7 @@ void Contact::project(physics::Model& model, double /*time*/, double dt) {
     spare_energy_ -= normal_work(model);
 }
 
-std::vector<std::pair<NodeId, Vec3>> Contact::node_forces() const {
+std::vector<std::pair<VertexId, Vec3>> Contact::node_forces() const {
     if (last_dt_ == 0.0) return restored_forces_;
     auto forces = solver_.surface_impulses();
     for (auto& [node, force] : forces) force /= last_dt_;

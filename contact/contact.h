@@ -77,7 +77,7 @@ class Contact final : public physics::VelocityProjection {
     double fracture_energy() const { return fracture_energy_; }
     /// Returns what the points of contact exerted in the last step, N, at the nodes of the mesh at
     /// which it is not zero, in ascending order of the nodes. Cost: O(n log n) in the points.
-    std::vector<std::pair<NodeId, Vec3>> node_forces() const;
+    std::vector<std::pair<VertexId, Vec3>> node_forces() const;
     const ContactSolver& solver() const { return solver_; }
 
     void save(ArchiveWriter& ar) const;
@@ -111,9 +111,9 @@ class Contact final : public physics::VelocityProjection {
     /// What normal impulses have taken of late, less what they have given, J. While it is below 0,
     /// overlaps stay. So pushing them out cannot keep the body in motion.
     double spare_energy_ = 0.0;
-    std::vector<Vec3> start_velocities_;                    // of a step, by number in the solver
-    std::vector<std::pair<NodeId, Vec3>> restored_forces_;  // as node_forces() then returns them
-    std::vector<Vec3> inverse_masses_, impulses_;           // scratch, by node of the fragments
+    std::vector<Vec3> start_velocities_;                      // of a step, by number in the solver
+    std::vector<std::pair<VertexId, Vec3>> restored_forces_;  // as node_forces() then returns them
+    std::vector<Vec3> inverse_masses_, impulses_;             // scratch, by node of the fragments
 };
 
 }  // namespace incise::contact

@@ -73,21 +73,21 @@ void ContactSolver::begin_segment(const Vec3& span, const Vec3& impulse) {
     begin({.impulse = impulse, .is_held = true, .offset = span});
 }
 
-std::vector<std::pair<NodeId, Vec3>> ContactSolver::surface_impulses() const {
-    std::vector<std::pair<NodeId, Vec3>> sums;
+std::vector<std::pair<VertexId, Vec3>> ContactSolver::surface_impulses() const {
+    std::vector<std::pair<VertexId, Vec3>> sums;
     for (const auto& [point, at] : on_surface_) {
         if (impulses_[point].isZero(0.0)) continue;
-        for (std::size_t k = 0; k < at.nodes.size(); ++k)
+        for (std::size_t k = 0; k < at.vertices.size(); ++k)
             if (at.weights[k] != 0.0)
-                sums.emplace_back(at.nodes[k], at.weights[k] * impulses_[point]);
+                sums.emplace_back(at.vertices[k], at.weights[k] * impulses_[point]);
     }
-    std::ranges::stable_sort(sums, {}, &std::pair<NodeId, Vec3>::first);
+    std::ranges::stable_sort(sums, {}, &std::pair<VertexId, Vec3>::first);
     std::size_t count = 0;
-    for (const auto& [node, impulse] : sums) {
-        if (count > 0 && sums[count - 1].first == node)
+    for (const auto& [vertex, impulse] : sums) {
+        if (count > 0 && sums[count - 1].first == vertex)
             sums[count - 1].second += impulse;
         else
-            sums[count++] = {node, impulse};
+            sums[count++] = {vertex, impulse};
     }
     sums.resize(count);
     return sums;

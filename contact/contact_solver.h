@@ -67,12 +67,12 @@ class ContactSolver {
     void begin(const ContactPoint& point);
     /// Adds a share to the last point. Several shares of one node become one.
     void add_share(NodeId node, double weight);
-    /// Nodes of the surface with their weights: at most four, the others have no weight.
+    /// Vertices of the surface with their weights: at most four, the others have no weight.
     struct OnSurface {
-        std::array<NodeId, 4> nodes = {};
+        std::array<VertexId, 4> vertices = {};
         std::array<double, 4> weights = {};
     };
-    /// Notes which nodes of the surface the last point depends on. It is for surface_impulses()
+    /// Notes which vertices of the surface the last point depends on. It is for surface_impulses()
     /// alone.
     void note_surface(const OnSurface& at) { on_surface_.emplace_back(points_.size() - 1, at); }
     /// Begins a thread; its segments follow.
@@ -111,9 +111,9 @@ class ContactSolver {
 
     /// Returns the impulse of point `i`, N s. It acts on shares by their weights.
     const Vec3& impulse(std::size_t i) const { return impulses_[i]; }
-    /// Sums what the points exert on the nodes of the surface, N s, where it is not zero, in
-    /// ascending order of the nodes.
-    std::vector<std::pair<NodeId, Vec3>> surface_impulses() const;
+    /// Sums what the points exert on the vertices of the surface, N s, where it is not zero, in
+    /// ascending order of the vertices.
+    std::vector<std::pair<VertexId, Vec3>> surface_impulses() const;
     /// Returns the relative velocity of the shares of point `i` after solve(), m/s.
     Vec3 velocity(std::size_t i) const;
 

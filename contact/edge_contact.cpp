@@ -224,12 +224,12 @@ bool EdgeContact::are_near(const SurfaceTree& tree, const ContactBody& body,
     if ((p + s * (q - p) - x - t * (y - x)).squaredNorm() >= reach * reach) return false;
     // The corners of all fragments at the edge.
     if (around_.empty()) {
-        for (const NodeId node : first.nodes) append_fragment_corners(body, node, star_, around_);
+        for (const VertexId node : first.nodes) append_fragment_corners(body, node, star_, around_);
         std::ranges::sort(around_);
         around_.erase(std::unique(around_.begin(), around_.end()), around_.end());
     }
     return std::ranges::none_of(second.triangles, [&](std::uint32_t triangle) {
-        const ElementId fragment = body.fragments.fragment_of_cell(body.faces[triangle].element);
+        const ElementId fragment = body.fragments.fragment_of_cell(body.faces[triangle].cell);
         return std::ranges::any_of(body.fragments.corners(fragment), [&](NodeId corner) {
             return std::ranges::binary_search(around_, corner);
         });
@@ -254,11 +254,11 @@ void EdgeContact::take_found(std::span<const Vec3> positions) {
 
     auto& is_followed = is_followed_;
     is_followed.assign(positions.size(), 0);
-    for (const NodeId n : nodes_) is_followed[n.index()] = 1;
+    for (const VertexId n : nodes_) is_followed[n.index()] = 1;
     last_positions_.resize(positions.size(), Vec3::Zero());
     for (const Pair& pair : pairs_)
         for (const std::uint32_t edge : {pair.edges.sharp, pair.edges.other})
-            for (const NodeId n : edges_[edge].nodes) {
+            for (const VertexId n : edges_[edge].nodes) {
                 if (is_followed[n.index()] == 0) last_positions_[n.index()] = positions[n.index()];
                 is_followed[n.index()] = 2;
             }
@@ -329,7 +329,7 @@ bool EdgeContact::find_touch(Pair& pair, const Touching* known, const physics::M
     const Vec3 n0 = normal_of(second.triangles[0]), n1 = normal_of(second.triangles[1]);
     const Vec3 m0 = normal_of(first.triangles[0]), m1 = normal_of(first.triangles[1]);
     double size = surface.lengths[first.nodes[0].index()];
-    for (const NodeId n : {first.nodes[1], second.nodes[0], second.nodes[1]})
+    for (const VertexId n : {first.nodes[1], second.nodes[0], second.nodes[1]})
         size = std::min(size, surface.lengths[n.index()]);
     const double beside = known == nullptr ? beside_to_begin : beside_to_stay;
     const auto is_out_of_second = [&] { return is_between(normal, n0, n1, beside); };
@@ -403,7 +403,7 @@ void EdgeContact::add_points(const physics::Model& model, const Surface& surface
                              ContactSolver& solver) {
     const std::span<const Vec3> x = model.mesh_positions();
     moves_.resize(x.size());
-    for (const NodeId n : nodes_) {
+    for (const VertexId n : nodes_) {
         moves_[n.index()] = (x[n.index()] - last_positions_[n.index()]).norm();
         last_positions_[n.index()] = x[n.index()];
     }
@@ -464,8 +464,9 @@ void EdgeContact::restore(ArchiveReader& ar, std::size_t node_capacity) {
                                 return !std::isfinite(pair.gap) || !(pair.slack <= 0.0) ||
                                        !pair.impulse.allFinite();
                             }) ||
-        last_positions_.size() > node_capacity ||
-        std::ranges::any_of(nodes_, [&](NodeId n) { return n.index() >= last_positions_.size(); }))
+        last_positions_.size() > node_capacity || std::ranges::any_of(nodes_, [&](VertexId n) {
+            return n.index() >= last_positions_.size();
+        }))
         throw InputError("its contact is that of another body");
 }
 

@@ -111,7 +111,7 @@ class EdgeContact {
     std::vector<std::uint32_t> sharp_;  // edges that are sharp and take part
     std::vector<Pair> pairs_;           // in ascending order
     std::vector<Touching> touching_;    // likewise: points of the last step
-    std::vector<NodeId> nodes_;         // of the pairs
+    std::vector<VertexId> nodes_;       // of the pairs
     std::vector<Vec3> last_positions_;  // of nodes_, by id, m
     double max_penetration_ = 0.0;
     std::size_t first_point_ = 0;            // in the solver, that of the first in touching_
@@ -121,7 +121,7 @@ class EdgeContact {
     std::vector<std::uint32_t> near_;        // scratch
     std::vector<Box> boxes_;                 // scratch, by edge of near_
     std::vector<NodeId> around_;             // scratch
-    std::vector<ElementId> star_;            // scratch
+    std::vector<CellId> star_;               // scratch
     std::vector<std::uint8_t> is_followed_;  // scratch, by node id
     std::array<std::vector<std::uint32_t>, 2> sharp_again_;  // scratch of find_again()
     std::size_t num_tested_ = 0;

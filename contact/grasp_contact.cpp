@@ -71,15 +71,15 @@ void GraspContact::close(const physics::Model& model, std::span<const Triangle> 
                          const Pose& pose) {
     const std::span<const Vec3> positions = model.mesh_positions();
     held_.clear();
-    std::vector<NodeId> nodes;
+    std::vector<VertexId> nodes;
     for (const Triangle& triangle : surface)
-        for (const NodeId n : triangle) {
+        for (const VertexId n : triangle) {
             const Vec3 x = pose.to_tool(positions[n.index()]);
             if (cutting::meets(grasper_.jaws, x, x)) nodes.push_back(n);
         }
     std::ranges::sort(nodes);
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    for (const NodeId n : nodes)
+    for (const VertexId n : nodes)
         held_.push_back({{n, n, n}, Vec3::UnitX(), pose.to_tool(positions[n.index()])});
     if (!held_.empty()) return;
     // Jaws between nodes hold a point of each triangle that they meet.
@@ -109,7 +109,8 @@ void GraspContact::close(const physics::Model& model, std::span<const Triangle> 
 
 void GraspContact::follow(const physics::Model& model) {
     std::erase_if(held_, [&](const Held& held) {
-        return std::ranges::any_of(held.nodes, [&](NodeId n) { return !model.mesh().is_alive(n); });
+        return std::ranges::any_of(held.nodes,
+                                   [&](VertexId n) { return !model.mesh().is_alive(n); });
     });
 }
 
@@ -157,7 +158,7 @@ void GraspContact::restore(ArchiveReader& ar, const physics::Model& model) {
     for (const Held& held : held_) {
         const bool fits = held.weights.allFinite() && held.place.allFinite() &&
                           held.impulse.allFinite() &&
-                          std::ranges::all_of(held.nodes, [&](NodeId n) {
+                          std::ranges::all_of(held.nodes, [&](VertexId n) {
                               return n.is_valid() && n.index() < model.mesh().node_capacity() &&
                                      model.mesh().is_alive(n);
                           });

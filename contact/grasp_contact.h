@@ -63,10 +63,10 @@ class GraspContact {
   private:
     /// A point of the surface.
     struct Held {
-        std::array<NodeId, 3> nodes;  ///< of the mesh
-        Vec3 weights;                 ///< of them; a node has the weight 1
-        Vec3 place;                   ///< in the frame of the jaws, m
-        Vec3 impulse = Vec3::Zero();  ///< of the last step, N s
+        std::array<VertexId, 3> nodes;  ///< of the mesh
+        Vec3 weights;                   ///< of them; a node has the weight 1
+        Vec3 place;                     ///< in the frame of the jaws, m
+        Vec3 impulse = Vec3::Zero();    ///< of the last step, N s
         static void archive(auto& ar, auto& self) {
             ar(self.nodes, self.weights, self.place, self.impulse);
         }

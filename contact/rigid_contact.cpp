@@ -55,7 +55,7 @@ void RigidContact::find_triangles(std::span<const Vec3> positions, const TissueS
     triangles_.clear();
     for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
         Box box;
-        for (const NodeId n : surface.triangles[t])
+        for (const VertexId n : surface.triangles[t])
             box.extend(before_.to_tool(positions[n.index()]));
         const Vec3 more = Vec3::Constant(margin);
         if (Box(box.min() - more, box.max() + more).intersects(of_shape)) triangles_.push_back(t);

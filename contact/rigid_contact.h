@@ -61,8 +61,8 @@ class RigidContact {
   private:
     /// What tells one point from another.
     struct Feature {
-        std::array<NodeId, 3> corners;  ///< of a triangle, that it depends on, in ascending order
-        std::int32_t tool_feature;      ///< see RigidTouch
+        std::array<VertexId, 3> corners;  ///< of a triangle, that it depends on, in ascending order
+        std::int32_t tool_feature;        ///< see RigidTouch
         auto operator<=>(const Feature&) const = default;
         static void archive(auto& ar, auto& self) { ar(self.corners, self.tool_feature); }
     };

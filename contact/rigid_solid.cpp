@@ -28,9 +28,9 @@ Box box_round(const Vec3& x, double distance) {
 // nearest point tells what is inside.
 RigidSolid::RigidSolid(const cutting::Solid& solid) : points_(solid.surface.points) {
     for (const auto& [a, b, c] : solid.surface.triangles)
-        triangles_.push_back({NodeId(static_cast<std::size_t>(a)),
-                              NodeId(static_cast<std::size_t>(b)),
-                              NodeId(static_cast<std::size_t>(c))});
+        triangles_.push_back({VertexId(static_cast<std::size_t>(a)),
+                              VertexId(static_cast<std::size_t>(b)),
+                              VertexId(static_cast<std::size_t>(c))});
     for (const Vec3& x : points_) extent_.extend(x);
     tree_.set_triangles(triangles_, points_);
     tree_.fit(points_);
@@ -38,11 +38,11 @@ RigidSolid::RigidSolid(const cutting::Solid& solid) : points_(solid.surface.poin
     points_of_.resize(triangles_.size());
     edges_of_.resize(triangles_.size());
     std::vector<bool> is_listed(points_.size(), false);
-    std::map<std::pair<NodeId, NodeId>, Vec3> of_edge;
+    std::map<std::pair<VertexId, VertexId>, Vec3> of_edge;
     for (std::size_t t = 0; t < triangles_.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k) {
-            const NodeId a = triangles_[t][k], b = triangles_[t][(k + 1) % 3],
-                         c = triangles_[t][(k + 2) % 3];
+            const VertexId a = triangles_[t][k], b = triangles_[t][(k + 1) % 3],
+                           c = triangles_[t][(k + 2) % 3];
             const Vec3 to_b = (points_[b.index()] - points_[a.index()]).normalized();
             const Vec3 to_c = (points_[c.index()] - points_[a.index()]).normalized();
             const double angle = std::acos(std::clamp(to_b.dot(to_c), -1.0, 1.0));
@@ -149,7 +149,7 @@ void RigidSolid::append_corner(const Corners& corners, int k, const Vec3& outwar
     touches.push_back({Vec3::Unit(k), nearest.point, normal, is_outside ? distance : -distance});
 }
 
-void RigidSolid::append_point(const Corners& corners, const Vec3& outward, NodeId p,
+void RigidSolid::append_point(const Corners& corners, const Vec3& outward, VertexId p,
                               double farthest, std::vector<RigidTouch>& touches) const {
     // A point that faces the same way is on the other side of the tool.
     if (point_normals_[p.index()].dot(outward) >= 0.0) return;
@@ -213,7 +213,7 @@ void RigidSolid::append_touches(const Corners& corners, double farthest,
     const Vec3 margin = Vec3::Constant(farthest);
     const Box near(box.min() - margin, box.max() + margin);
     tree_.for_each_against(near, all_directions, [&](std::uint32_t t) {
-        for (const NodeId p : points_of_[t]) append_point(corners, outward, p, farthest, touches);
+        for (const VertexId p : points_of_[t]) append_point(corners, outward, p, farthest, touches);
         for (const std::size_t e : edges_of_[t])
             append_edge(corners, outward, e, farthest, touches);
     });

@@ -34,7 +34,7 @@ class RigidSolid {
     Corners corners_of(std::uint32_t triangle) const;
     /// An edge at which the surface is convex.
     struct Edge {
-        NodeId from, to;
+        VertexId from, to;
         std::array<Vec3, 2> normals;  ///< of its triangles, of unit length
     };
     bool find_nearest(const Vec3& x, double farthest, Nearest& nearest) const;
@@ -42,7 +42,7 @@ class RigidSolid {
                               Nearest& nearest) const;
     void append_corner(const Corners& corners, int k, const Vec3& outward, double farthest,
                        std::vector<RigidTouch>& touches) const;
-    void append_point(const Corners& corners, const Vec3& outward, NodeId p, double farthest,
+    void append_point(const Corners& corners, const Vec3& outward, VertexId p, double farthest,
                       std::vector<RigidTouch>& touches) const;
     void append_edge(const Corners& corners, const Vec3& outward, std::size_t edge, double farthest,
                      std::vector<RigidTouch>& touches) const;
@@ -55,7 +55,7 @@ class RigidSolid {
     std::vector<std::array<Vec3, 3>> edge_normals_;  // by triangle and edge, from corner k on
     std::vector<Edge> edges_;
     // Points and edges by triangle, each at one of its triangles.
-    std::vector<std::vector<NodeId>> points_of_;
+    std::vector<std::vector<VertexId>> points_of_;
     std::vector<std::vector<std::size_t>> edges_of_;
 };
 

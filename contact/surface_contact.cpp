@@ -44,7 +44,7 @@ constexpr double rounding = 1e-10;
 
 }  // namespace
 
-void add_shares(const physics::Model& model, NodeId n, double weight, ContactSolver& solver) {
+void add_shares(const physics::Model& model, VertexId n, double weight, ContactSolver& solver) {
     const topology::Embedding& at = model.embedded_nodes()[n];
     for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
         solver.add_share(at.nodes[k], weight * at.weights[k]);
@@ -53,8 +53,8 @@ void add_shares(const physics::Model& model, NodeId n, double weight, ContactSol
 void add_surface_shares(const physics::Model& model, const ContactSolver::OnSurface& at,
                         ContactSolver& solver) {
     solver.note_surface(at);
-    for (std::size_t k = 0; k < at.nodes.size(); ++k)
-        if (at.weights[k] != 0.0) add_shares(model, at.nodes[k], at.weights[k], solver);
+    for (std::size_t k = 0; k < at.vertices.size(); ++k)
+        if (at.weights[k] != 0.0) add_shares(model, at.vertices[k], at.weights[k], solver);
 }
 
 void SurfaceContact::add_points(const physics::Model& model, ContactSolver& solver) {
@@ -99,9 +99,9 @@ bool SurfaceContact::is_with_twin(std::size_t i) const {
         for (int corner = 0; corner < 3; ++corner)
             if (touches_[k].weights[corner] > nearly_one)
                 return triangle[static_cast<std::size_t>(corner)];
-        return NodeId();
+        return VertexId();
     };
-    const NodeId n = pairs_.nodes()[i], other = node_under(i);
+    const VertexId n = pairs_.nodes()[i], other = node_under(i);
     if (!other.is_valid() || n < other) return false;
     const std::int32_t of_other = near_of_node_[other.index()];
     if (of_other < 0) return false;
@@ -151,13 +151,13 @@ void SurfaceContact::list_lengths(const physics::Model& model) {
     lengths_.assign(model.mesh().node_capacity(), size_);
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
         const topology::FragmentMesh& fragments = model.fragments();
-        const auto corners = fragments.corners(fragments.fragment_of_cell(faces_[t].element));
+        const auto corners = fragments.corners(fragments.fragment_of_cell(faces_[t].cell));
         double sum = 0.0, count = 0.0;
         for (std::size_t i = 0; i < corners.size(); ++i)
             for (std::size_t k = 0; k < i; ++k, count += 1.0)
                 sum += (fragments.rest_position(corners[i]) - fragments.rest_position(corners[k]))
                            .norm();
-        for (const NodeId n : triangles_[t])
+        for (const VertexId n : triangles_[t])
             lengths_[n.index()] = std::min(lengths_[n.index()], sum / count);
     }
 }
@@ -176,7 +176,7 @@ void SurfaceContact::know_surface(const physics::Model& model,
     std::vector<std::int32_t> number_of_old(old_triangles.size(), none);
     Box changed;
     const auto extend = [&](const Triangle& triangle) {
-        for (const NodeId n : triangle) changed.extend(positions[n.index()]);
+        for (const VertexId n : triangle) changed.extend(positions[n.index()]);
     };
     std::size_t next = 0;  // of the old ones, in the same order
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
@@ -199,7 +199,7 @@ void SurfaceContact::know_surface(const physics::Model& model,
                         changed.max() + Vec3::Constant(2.0 * distance));
     const Vec3 mean = mean_move(positions.first(num_known));
     std::vector<std::uint8_t> is_chosen(positions.size(), 0);
-    const auto is_near_edit = [&](NodeId n) {
+    const auto is_near_edit = [&](VertexId n) {
         if (n.index() < num_known && !near_edit.contains(positions[n.index()])) return false;
         positions_of_pairs_[n.index()] = positions[n.index()] - mean;
         is_chosen[n.index()] = 1;
@@ -210,7 +210,7 @@ void SurfaceContact::know_surface(const physics::Model& model,
         if (number_of_old[t] >= 0)
             touching.emplace_back(n, static_cast<std::uint32_t>(number_of_old[t]));
     const std::vector<NearNode> known = std::move(near_);
-    const std::vector<NodeId> known_nodes(pairs_.nodes().begin(), pairs_.nodes().end());
+    const std::vector<VertexId> known_nodes(pairs_.nodes().begin(), pairs_.nodes().end());
     pairs_.find_again(tree_, body(model), positions, distance, number_of_old, is_near_edit,
                       touching);
     edges_.find_again(tree_, body(model), positions, distance - (node_reach - edge_reach) * size_,
@@ -273,7 +273,7 @@ bool SurfaceContact::has_moved_far(std::span<const Vec3> positions) {
     const Vec3 mean = mean_move(positions);
     double square = 0.0;
     for (const Triangle& triangle : triangles_)
-        for (const NodeId n : triangle)
+        for (const VertexId n : triangle)
             square = std::max(
                 square,
                 (positions[n.index()] - positions_of_pairs_[n.index()] - mean).squaredNorm());
@@ -297,7 +297,7 @@ bool SurfaceContact::find_pairs_of_moved(const physics::Model& model) {
     is_node.assign(positions.size(), 0);
     is_triangle.assign(triangles_.size(), 0);
     for (std::size_t t = 0; t < triangles_.size(); ++t)
-        for (const NodeId n : triangles_[t])
+        for (const VertexId n : triangles_[t])
             if ((positions[n.index()] - positions_of_pairs_[n.index()] - mean).squaredNorm() >
                 square)
                 is_node[n.index()] = is_triangle[t] = 1;
@@ -318,7 +318,7 @@ bool SurfaceContact::find_pairs_of_moved(const physics::Model& model) {
         const NormalCone any_direction{Vec3::UnitZ(), std::numbers::pi};
         tree_.for_each_against(Box(group.min() - margin, group.max() + margin), any_direction,
                                [&](std::uint32_t t) {
-                                   for (const NodeId n : triangles_[t]) is_near[n.index()] = 1;
+                                   for (const VertexId n : triangles_[t]) is_near[n.index()] = 1;
                                });
         group.setEmpty();
         in_group = 0;
@@ -338,7 +338,7 @@ bool SurfaceContact::find_pairs_of_moved(const physics::Model& model) {
                       is_node, is_near);
     near_.assign(pairs_.nodes().size(), {});
     for (std::size_t i = 0; i < near_.size(); ++i) {
-        const NodeId n = pairs_.nodes()[i];
+        const VertexId n = pairs_.nodes()[i];
         const auto it = std::ranges::lower_bound(known_nodes, n);
         if (it == known_nodes.end() || *it != n) continue;
         near_[i] = known[static_cast<std::size_t>(it - known_nodes.begin())];
@@ -350,7 +350,7 @@ bool SurfaceContact::find_pairs_of_moved(const physics::Model& model) {
 }
 
 void SurfaceContact::find_pairs(const physics::Model& model) {
-    std::map<NodeId, NearNode> known;
+    std::map<VertexId, NearNode> known;
     for (std::size_t i = 0; i < near_.size(); ++i)
         if (near_[i].touched >= 0) known.emplace(pairs_.nodes()[i], near_[i]);
     const std::span<const NodeAndTriangle> touching = touching_pairs();
@@ -396,7 +396,7 @@ bool SurfaceContact::has_many_pairs() const {
 }
 
 /// Returns where a node is above a triangle. Its gap is infinite if the triangle has no area.
-SurfaceContact::Touch SurfaceContact::touch(NodeId n, std::size_t t,
+SurfaceContact::Touch SurfaceContact::touch(VertexId n, std::size_t t,
                                             std::span<const Vec3> positions) const {
     const auto& [na, nb, nc] = triangles_[t];
     const Vec3 &a = positions[na.index()], &b = positions[nb.index()], &c = positions[nc.index()];
@@ -414,14 +414,14 @@ SurfaceContact::Touch SurfaceContact::touch(NodeId n, std::size_t t,
 }
 
 /// Returns the local length at a node and a triangle, m.
-double SurfaceContact::length_at(NodeId n, std::size_t t) const {
+double SurfaceContact::length_at(VertexId n, std::size_t t) const {
     double length = lengths_[n.index()];
-    for (const NodeId corner : triangles_[t]) length = std::min(length, lengths_[corner.index()]);
+    for (const VertexId corner : triangles_[t]) length = std::min(length, lengths_[corner.index()]);
     return length;
 }
 
 /// True if a node is above or below a triangle, or so far outside it, as a weight, and near enough.
-bool SurfaceContact::is_over(NodeId n, std::size_t t, const Touch& at, double outside) const {
+bool SurfaceContact::is_over(VertexId n, std::size_t t, const Touch& at, double outside) const {
     // Of a node at a corner, rounding decides over which triangle it is.
     constexpr double tolerance = 1e-6;
     const double least_weight = at.weights.minCoeff();
@@ -434,7 +434,7 @@ bool SurfaceContact::is_over(NodeId n, std::size_t t, const Touch& at, double ou
 void SurfaceContact::find_touched(std::size_t i, const physics::Model& model) {
     const std::span<const Vec3> positions = model.mesh_positions();
     NearNode& near = near_[i];
-    const NodeId n = pairs_.nodes()[i];
+    const VertexId n = pairs_.nodes()[i];
     const std::int32_t before = near.touched;
     double gap_before = std::numeric_limits<double>::infinity();
     if (before >= 0) {

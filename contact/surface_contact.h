@@ -28,7 +28,7 @@ struct ContactSettings {
 };
 
 /// Adds the shares of a node of the mesh to the last point of a solver.
-void add_shares(const physics::Model& model, NodeId n, double weight, ContactSolver& solver);
+void add_shares(const physics::Model& model, VertexId n, double weight, ContactSolver& solver);
 /// The same for a point of the surface, with what ContactSolver::surface_impulses() needs.
 void add_surface_shares(const physics::Model& model, const ContactSolver::OnSurface& at,
                         ContactSolver& solver);
@@ -114,9 +114,9 @@ class SurfaceContact {
     bool has_moved_far(std::span<const Vec3> positions);
     void number_nodes(std::size_t node_capacity);
     void find_touched(std::size_t i, const physics::Model& model);
-    double length_at(NodeId n, std::size_t t) const;
-    bool is_over(NodeId n, std::size_t t, const Touch& at, double outside) const;
-    Touch touch(NodeId n, std::size_t t, std::span<const Vec3> positions) const;
+    double length_at(VertexId n, std::size_t t) const;
+    bool is_over(VertexId n, std::size_t t, const Touch& at, double outside) const;
+    Touch touch(VertexId n, std::size_t t, std::span<const Vec3> positions) const;
     bool is_with_twin(std::size_t i) const;
     void add_point(std::size_t i, const physics::Model& model, ContactSolver& solver);
 
@@ -140,7 +140,7 @@ class SurfaceContact {
     struct {
         std::vector<std::uint8_t> is_node, is_triangle, is_near;
         std::vector<NearNode> known;
-        std::vector<NodeId> known_nodes;
+        std::vector<VertexId> known_nodes;
     } part_;                                    // scratch of find_pairs_of_moved()
     std::size_t first_point_ = 0;               // in the solver
     std::vector<std::size_t> nodes_of_points_;  // by point from there on, its node in pairs_

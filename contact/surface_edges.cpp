@@ -27,7 +27,7 @@ void SurfaceEdges::set_triangles(std::span<const Triangle> triangles,
     join(rest_positions);
 }
 
-std::uint32_t SurfaceEdges::find(const std::array<NodeId, 2>& nodes) const {
+std::uint32_t SurfaceEdges::find(const std::array<VertexId, 2>& nodes) const {
     const auto it = std::ranges::lower_bound(edges_, nodes, {}, &SurfaceEdge::nodes);
     return it == edges_.end() || it->nodes != nodes
                ? no_edge
@@ -37,7 +37,7 @@ std::uint32_t SurfaceEdges::find(const std::array<NodeId, 2>& nodes) const {
 /// Lists the edges at which two triangles meet. Nodes of a surface are such that no more do.
 void SurfaceEdges::list(std::span<const Triangle> triangles, std::span<const Vec3> X) {
     struct Side {
-        NodeId to;
+        VertexId to;
         std::uint32_t triangle;
         std::uint8_t corner;
         bool is_reversed;
@@ -47,15 +47,15 @@ void SurfaceEdges::list(std::span<const Triangle> triangles, std::span<const Vec
     const auto for_each_side = [&](const auto& visit) {
         for (std::uint32_t t = 0; t < triangles.size(); ++t)
             for (std::uint8_t k = 0; k < 3; ++k) {
-                const NodeId a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+                const VertexId a = triangles[t][k], b = triangles[t][(k + 1) % 3];
                 visit(std::min(a, b), Side{std::max(a, b), t, k, b < a});
             }
     };
-    for_each_side([&](NodeId from, const Side&) { ++begins[from.index() + 1]; });
+    for_each_side([&](VertexId from, const Side&) { ++begins[from.index() + 1]; });
     for (std::size_t n = 1; n < begins.size(); ++n) begins[n] += begins[n - 1];
     std::vector<Side> sides(begins.back());
     std::vector<std::size_t> ends(begins.begin(), begins.end() - 1);
-    for_each_side([&](NodeId from, const Side& side) { sides[ends[from.index()]++] = side; });
+    for_each_side([&](VertexId from, const Side& side) { sides[ends[from.index()]++] = side; });
 
     edges_.clear();
     of_triangle_.assign(triangles.size(), {no_edge, no_edge, no_edge});
@@ -67,13 +67,13 @@ void SurfaceEdges::list(std::span<const Triangle> triangles, std::span<const Vec
             if (one.to != two.to || one.is_reversed == two.is_reversed) continue;
             const Vec3 a = area_of(triangles[one.triangle], X),
                        b = area_of(triangles[two.triangle], X);
-            const NodeId third = triangles[two.triangle][(two.corner + 2) % 3];
+            const VertexId third = triangles[two.triangle][(two.corner + 2) % 3];
             const bool is_sharp = a.dot(b) < cosine_of_sharp * a.norm() * b.norm() &&
                                   a.dot(X[third.index()] - X[n]) < 0.0;
             const auto number = static_cast<std::uint32_t>(edges_.size());
             of_triangle_[one.triangle][one.corner] = of_triangle_[two.triangle][two.corner] =
                 number;
-            edges_.push_back({{NodeId(n), one.to}, {one.triangle, two.triangle}, is_sharp});
+            edges_.push_back({{VertexId(n), one.to}, {one.triangle, two.triangle}, is_sharp});
             ++i;
         }
     }
@@ -82,7 +82,7 @@ void SurfaceEdges::list(std::span<const Triangle> triangles, std::span<const Vec
 /// Finds in which sharp edges others go on.
 void SurfaceEdges::join(std::span<const Vec3> rest_positions) {
     struct End {
-        NodeId node;
+        VertexId node;
         std::uint32_t edge;
         std::size_t end;  // of the edge: 0 or 1
     };

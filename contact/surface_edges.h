@@ -19,7 +19,7 @@ inline constexpr std::uint32_t no_edge = 0xffffffff;
 
 /// An edge at which two triangles of a surface meet.
 struct SurfaceEdge {
-    std::array<NodeId, 2> nodes;             ///< in ascending order
+    std::array<VertexId, 2> nodes;           ///< in ascending order
     std::array<std::uint32_t, 2> triangles;  ///< that meet at it
     bool is_sharp;                           ///< at rest it is convex, and its triangles turn
     /// By end, the sharp edge that goes on there, or no_edge. An edge that is not sharp has none.
@@ -45,7 +45,7 @@ class SurfaceEdges {
     /// Returns the numbers of the edges of a triangle; no_edge where it meets no other one.
     const std::array<std::uint32_t, 3>& of_triangle(std::size_t t) const { return of_triangle_[t]; }
     /// Returns the number of the edge between two nodes, in ascending order, or no_edge.
-    std::uint32_t find(const std::array<NodeId, 2>& nodes) const;
+    std::uint32_t find(const std::array<VertexId, 2>& nodes) const;
 
   private:
     void list(std::span<const Triangle> triangles, std::span<const Vec3> X);

@@ -70,12 +70,12 @@ void SurfaceTree::set_triangles(std::span<const Triangle> triangles,
     triangles_.assign(triangles.begin(), triangles.end());
     Box box;
     for (const Triangle& triangle : triangles_)
-        for (const NodeId n : triangle) box.extend(rest_positions[n.index()]);
+        for (const VertexId n : triangle) box.extend(rest_positions[n.index()]);
     std::vector<std::pair<std::uint64_t, std::uint32_t>> places;
     places.reserve(triangles_.size());
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
         Vec3 sum = Vec3::Zero();
-        for (const NodeId n : triangles_[t]) sum += rest_positions[n.index()];
+        for (const VertexId n : triangles_[t]) sum += rest_positions[n.index()];
         places.emplace_back(place_along_curve(sum / 3.0, box), t);
     }
     std::ranges::sort(places);

@@ -12,7 +12,7 @@
 
 namespace incise::contact {
 
-using Triangle = std::array<NodeId, 3>;
+using Triangle = std::array<VertexId, 3>;
 
 /// The surface of a body.
 struct TissueSurface {

@@ -95,7 +95,7 @@ ToolImpulse SutureContact::take_impulses(const ContactSolver& solver, double dt)
 void SutureContact::restore(ArchiveReader& ar, const physics::Model& model) {
     list(ar, *this);
     const auto is_sound = [&](const Stitch& stitch) {
-        const ElementId e = stitch.at.cell;
+        const CellId e = stitch.at.cell;
         return stitch.rest.allFinite() && stitch.force.allFinite() && e.is_valid() &&
                e.index() < model.mesh().element_capacity() && model.mesh().is_alive(e) &&
                std::ranges::all_of(stitch.at.weights,

@@ -21,7 +21,7 @@ void set_node_normals(std::span<const Triangle> triangles, std::span<const Vec3>
         const double double_area = area.norm();
         if (!(double_area > 0.0)) continue;
         const Vec3 normal = area / double_area;
-        const auto add = [&](NodeId n, const Vec3& a, const Vec3& b) {
+        const auto add = [&](VertexId n, const Vec3& a, const Vec3& b) {
             normals[n.index()] += std::atan2(double_area, a.dot(b)) * normal;
         };
         add(triangle[0], y - x, z - x);
@@ -51,10 +51,10 @@ double squared_distance(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3&
     return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
 }
 
-void append_fragment_corners(const ContactBody& body, NodeId n, std::vector<ElementId>& star,
+void append_fragment_corners(const ContactBody& body, VertexId n, std::vector<CellId>& star,
                              std::vector<NodeId>& corners) {
     body.mesh.star(n, star);
-    for (const ElementId cell : star) {
+    for (const CellId cell : star) {
         const auto of_fragment = body.fragments.corners(body.fragments.fragment_of_cell(cell));
         corners.insert(corners.end(), of_fragment.begin(), of_fragment.end());
     }
@@ -66,7 +66,7 @@ void TouchingPairs::set_surface(const SurfaceTree& tree, const ContactBody& body
     std::vector<bool> is_listed(body.mesh.node_capacity(), false);
     for (const std::uint32_t t : tree.order()) {
         if (body.takes_part[t] == 0) continue;
-        for (const NodeId n : tree.triangles()[t]) {
+        for (const VertexId n : tree.triangles()[t]) {
             if (is_listed[n.index()]) continue;
             is_listed[n.index()] = true;
             surface_nodes_.push_back(n);
@@ -77,7 +77,7 @@ void TouchingPairs::set_surface(const SurfaceTree& tree, const ContactBody& body
     is_around_.assign(body.fragments.node_capacity(), 0);
 }
 
-std::span<const NodeId> TouchingPairs::around(const ContactBody& body, NodeId n) {
+std::span<const NodeId> TouchingPairs::around(const ContactBody& body, VertexId n) {
     std::size_t& begin = around_begin_[n.index()];
     if (begin == none_yet) {
         corners_.clear();
@@ -94,10 +94,10 @@ std::span<const NodeId> TouchingPairs::around(const ContactBody& body, NodeId n)
 // Parts that are farther from each other than the elements round the node have no common corners.
 // Nearer ones may touch only if they are the two sides of a cut, near its end: then their normals
 // are against each other, and the node is on the triangle at rest.
-bool TouchingPairs::are_sides_of_cut(const SurfaceTree& tree, const ContactBody& body, NodeId n,
+bool TouchingPairs::are_sides_of_cut(const SurfaceTree& tree, const ContactBody& body, VertexId n,
                                      std::uint32_t t) const {
     const auto& [a, b, c] = tree.triangles()[t];
-    const auto X = [&](NodeId m) { return body.mesh.rest_position(m); };
+    const auto X = [&](VertexId m) { return body.mesh.rest_position(m); };
     const Vec3 normal = (X(b) - X(a)).cross(X(c) - X(a)), &of_node = rest_normals_[n.index()];
     const double double_area = normal.norm();
     constexpr double least_cosine = -0.5;
@@ -120,11 +120,11 @@ void TouchingPairs::find(const SurfaceTree& tree, const ContactBody& body,
 void TouchingPairs::find_again(const SurfaceTree& tree, const ContactBody& body,
                                std::span<const Vec3> positions, double reach,
                                std::span<const std::int32_t> number_of_old,
-                               const std::function<bool(NodeId)>& is_chosen,
+                               const std::function<bool(VertexId)>& is_chosen,
                                std::span<const NodeAndTriangle> touching) {
     found_.clear();
-    std::vector<NodeId> chosen;
-    for (const NodeId n : surface_nodes_) {
+    std::vector<VertexId> chosen;
+    for (const VertexId n : surface_nodes_) {
         const auto it = std::ranges::lower_bound(nodes_, n);
         const bool is_known = it != nodes_.end() && *it == n;
         const auto old = is_known ? triangles_of(static_cast<std::size_t>(it - nodes_.begin()))
@@ -155,7 +155,7 @@ void TouchingPairs::find_moved(const SurfaceTree& tree, const ContactBody& body,
     const std::size_t num_kept = found_.size();
     moved_nodes_.clear();
     near_moved_.clear();
-    for (const NodeId n : surface_nodes_) {
+    for (const VertexId n : surface_nodes_) {
         if (moved.is_node[n.index()] != 0)
             moved_nodes_.push_back(n);
         else if (moved.is_near[n.index()] != 0)
@@ -171,25 +171,25 @@ void TouchingPairs::find_moved(const SurfaceTree& tree, const ContactBody& body,
 // triangles in groups.
 void TouchingPairs::append_pairs(const SurfaceTree& tree, const ContactBody& body,
                                  std::span<const Vec3> positions, double reach,
-                                 std::span<const NodeId> nodes,
+                                 std::span<const VertexId> nodes,
                                  std::span<const std::uint8_t> is_triangle) {
     constexpr std::size_t group_size = 8;
     // The cheapest tests come first: of many triangles near a node, few can touch it.
-    const auto is_near = [&](NodeId n, std::uint32_t t) {
+    const auto is_near = [&](VertexId n, std::uint32_t t) {
         const Vec3& x = positions[n.index()];
         const auto& [a, b, c] = tree.triangles()[t];
-        const auto X = [&](NodeId m) -> const Vec3& { return positions[m.index()]; };
+        const auto X = [&](VertexId m) -> const Vec3& { return positions[m.index()]; };
         return normals_[n.index()].dot(tree.normal(t)) < 0.0 &&
                tree.box(t).squaredExteriorDistance(x) < reach * reach && n != a && n != b &&
                n != c && body.takes_part[t] != 0 && std::abs(tree.normal(t).dot(x - X(a))) < reach;
     };
-    const auto is_touchable = [&](NodeId n, std::uint32_t t) {
-        const ElementId fragment = body.fragments.fragment_of_cell(body.faces[t].element);
+    const auto is_touchable = [&](VertexId n, std::uint32_t t) {
+        const ElementId fragment = body.fragments.fragment_of_cell(body.faces[t].cell);
         if (std::ranges::any_of(body.fragments.corners(fragment),
                                 [&](NodeId corner) { return is_around_[corner.index()] != 0; }) &&
             !are_sides_of_cut(tree, body, n, t))
             return false;
-        const auto X = [&](NodeId m) -> const Vec3& { return positions[m.index()]; };
+        const auto X = [&](VertexId m) -> const Vec3& { return positions[m.index()]; };
         const auto& [a, b, c] = tree.triangles()[t];
         return squared_distance(X(n), X(a), X(b), X(c)) < reach * reach;
     };
@@ -198,7 +198,7 @@ void TouchingPairs::append_pairs(const SurfaceTree& tree, const ContactBody& bod
         const auto group = nodes.subspan(begin, std::min(group_size, nodes.size() - begin));
         Box box;
         NormalCone normals;
-        for (const NodeId n : group) {
+        for (const VertexId n : group) {
             box.extend(positions[n.index()]);
             normals.include({normals_[n.index()].stableNormalized(), 0.0});
         }
@@ -209,7 +209,7 @@ void TouchingPairs::append_pairs(const SurfaceTree& tree, const ContactBody& bod
                                       near_group_.push_back(t);
                               });
         num_tested_ += group.size() * near_group_.size();
-        for (const NodeId n : group) {
+        for (const VertexId n : group) {
             near_node_.clear();
             for (const std::uint32_t t : near_group_)
                 if (is_near(n, t)) near_node_.push_back(t);
@@ -247,7 +247,7 @@ bool TouchingPairs::fits(std::size_t num_nodes, std::size_t num_triangles) const
            begin_.back() == triangles_.size() && std::ranges::is_sorted(begin_) &&
            std::ranges::is_sorted(nodes_) &&
            std::ranges::all_of(nodes_,
-                               [&](NodeId n) { return n.is_valid() && n.index() < num_nodes; }) &&
+                               [&](VertexId n) { return n.is_valid() && n.index() < num_nodes; }) &&
            std::ranges::all_of(triangles_, [&](std::uint32_t t) { return t < num_triangles; });
 }
 

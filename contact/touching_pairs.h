@@ -21,7 +21,7 @@ namespace incise::contact {
 double squared_distance(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// A node, and the number of a triangle of the surface.
-using NodeAndTriangle = std::pair<NodeId, std::uint32_t>;
+using NodeAndTriangle = std::pair<VertexId, std::uint32_t>;
 
 /// The body that the surface belongs to.
 struct ContactBody {
@@ -33,7 +33,7 @@ struct ContactBody {
 
 /// Appends the corners of all fragments with a cell at a node. Some may come several times.
 /// @param star  scratch
-void append_fragment_corners(const ContactBody& body, NodeId n, std::vector<ElementId>& star,
+void append_fragment_corners(const ContactBody& body, VertexId n, std::vector<CellId>& star,
                              std::vector<NodeId>& corners);
 
 /// Pairs of a node and a triangle that are near each other and face each other.
@@ -60,7 +60,7 @@ class TouchingPairs {
     void find_again(const SurfaceTree& tree, const ContactBody& body,
                     std::span<const Vec3> positions, double reach,
                     std::span<const std::int32_t> number_of_old,
-                    const std::function<bool(NodeId)>& is_chosen,
+                    const std::function<bool(VertexId)>& is_chosen,
                     std::span<const NodeAndTriangle> touching);
 
     /// The part of a surface that has moved by more than the rest.
@@ -76,7 +76,7 @@ class TouchingPairs {
                     std::span<const NodeAndTriangle> touching);
 
     /// Returns the nodes with pairs, in ascending order.
-    std::span<const NodeId> nodes() const { return nodes_; }
+    std::span<const VertexId> nodes() const { return nodes_; }
     /// Returns how many nodes and triangles were compared so far: the cost of the searches.
     std::size_t num_tested() const { return num_tested_; }
     /// Returns the number of pairs.
@@ -93,30 +93,30 @@ class TouchingPairs {
   private:
     /// @param is_triangle  by triangle, 1: it counts; empty: all count
     void append_pairs(const SurfaceTree& tree, const ContactBody& body,
-                      std::span<const Vec3> positions, double reach, std::span<const NodeId> nodes,
-                      std::span<const std::uint8_t> is_triangle);
+                      std::span<const Vec3> positions, double reach,
+                      std::span<const VertexId> nodes, std::span<const std::uint8_t> is_triangle);
     /// @param num_sorted  pairs that are in order already, at the beginning
     void take_found(std::size_t num_sorted, std::span<const NodeAndTriangle> touching);
     /// Returns the corners of all fragments at a node of the surface, in ascending order. They are
     /// listed when they are asked for, and known until the surface is another one.
-    std::span<const NodeId> around(const ContactBody& body, NodeId n);
+    std::span<const NodeId> around(const ContactBody& body, VertexId n);
     /// True if a node and a triangle with common fragments are the two sides of a cut.
-    bool are_sides_of_cut(const SurfaceTree& tree, const ContactBody& body, NodeId n,
+    bool are_sides_of_cut(const SurfaceTree& tree, const ContactBody& body, VertexId n,
                           std::uint32_t t) const;
 
     static constexpr std::size_t none_yet = std::numeric_limits<std::size_t>::max();
-    std::vector<NodeId> surface_nodes_;         // those that take part, in the order of the tree
+    std::vector<VertexId> surface_nodes_;       // those that take part, in the order of the tree
     std::vector<Vec3> rest_normals_, normals_;  // by node; the latter is scratch
     std::vector<std::size_t> around_begin_;     // by node, of its list in around_, or none_yet
     std::vector<NodeId> around_;                // lists, each with its length before it
     std::vector<std::uint8_t> is_around_;       // scratch, by node of the fragments
     std::vector<NodeId> corners_;               // scratch
-    std::vector<ElementId> star_;               // scratch
+    std::vector<CellId> star_;                  // scratch
     std::vector<std::uint32_t> near_group_, near_node_;  // scratch
     std::vector<NodeAndTriangle> found_;                 // scratch
-    std::vector<NodeId> moved_nodes_, near_moved_;       // scratch of find_moved()
+    std::vector<VertexId> moved_nodes_, near_moved_;     // scratch of find_moved()
     std::size_t num_tested_ = 0;
-    std::vector<NodeId> nodes_;
+    std::vector<VertexId> nodes_;
     std::vector<std::size_t> begin_{0};
     std::vector<std::uint32_t> triangles_;
 };

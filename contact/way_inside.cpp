@@ -26,8 +26,8 @@ std::optional<FaceId> exit_of(const topology::Mesh& mesh, std::span<const Vec3> 
                               FaceId entered, const Vec3& from, const Vec3& along) {
     double least = 1.0 + margin;
     std::optional<FaceId> exit;
-    for (int f = 0; f < mesh.num_faces(entered.element); ++f) {
-        const FaceId face{entered.element, f};
+    for (int f = 0; f < mesh.num_faces(entered.cell); ++f) {
+        const FaceId face{entered.cell, f};
         if (face == entered) continue;
         const auto at = [&](int k) { return positions[mesh.face_corner(face, k).index()]; };
         for (int k = 2; k < mesh.face_size(face); ++k) {
@@ -47,9 +47,9 @@ std::optional<FaceId> exit_of(const topology::Mesh& mesh, std::span<const Vec3> 
 /// have it in common: it may be on an edge or at a corner of the surface, at which the element has
 /// no face of the surface.
 /// @param distance  at which it counts as on a face, m
-bool is_on_surface(const topology::Mesh& mesh, std::span<const Vec3> positions, ElementId element,
+bool is_on_surface(const topology::Mesh& mesh, std::span<const Vec3> positions, CellId element,
                    const Vec3& point, double distance) {
-    std::vector<ElementId> elements{element};
+    std::vector<CellId> elements{element};
     for (std::size_t i = 0; i < elements.size() && i < most_elements; ++i)
         for (int f = 0; f < mesh.num_faces(elements[i]); ++f) {
             const FaceId face{elements[i], f};
@@ -62,8 +62,8 @@ bool is_on_surface(const topology::Mesh& mesh, std::span<const Vec3> positions, 
             if (!is_on_face) continue;
             const FaceId neighbor = mesh.neighbor(face);
             if (!neighbor.is_valid()) return true;
-            if (std::ranges::find(elements, neighbor.element) == elements.end())
-                elements.push_back(neighbor.element);
+            if (std::ranges::find(elements, neighbor.cell) == elements.end())
+                elements.push_back(neighbor.cell);
         }
     return false;
 }
@@ -71,7 +71,7 @@ bool is_on_surface(const topology::Mesh& mesh, std::span<const Vec3> positions, 
 }  // namespace
 
 bool is_way_inside(const topology::Mesh& mesh, std::span<const Vec3> positions, FaceId face,
-                   const std::array<NodeId, 3>& triangle, const Vec3& weights, const Vec3& to) {
+                   const std::array<VertexId, 3>& triangle, const Vec3& weights, const Vec3& to) {
     constexpr double least_weight = 0.01;
     const Vec3 inner = weights.cwiseMax(least_weight) / weights.cwiseMax(least_weight).sum();
     Vec3 from = Vec3::Zero();
@@ -81,7 +81,7 @@ bool is_way_inside(const topology::Mesh& mesh, std::span<const Vec3> positions, 
     for (std::size_t i = 0; i < most_elements; ++i) {
         const auto exit = exit_of(mesh, positions, entered, from, to - from);
         if (!exit)
-            return !is_on_surface(mesh, positions, entered.element, to,
+            return !is_on_surface(mesh, positions, entered.cell, to,
                                   on_surface * (to - from).norm());
         entered = mesh.neighbor(*exit);
         if (!entered.is_valid()) return false;

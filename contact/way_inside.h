@@ -19,6 +19,6 @@ namespace incise::contact {
 /// @param weights    of the corners at the point where the way begins. It is moved a little towards
 ///                   the middle: along an edge of the mesh, rounding would decide.
 bool is_way_inside(const topology::Mesh& mesh, std::span<const Vec3> positions, FaceId face,
-                   const std::array<NodeId, 3>& triangle, const Vec3& weights, const Vec3& to);
+                   const std::array<VertexId, 3>& triangle, const Vec3& weights, const Vec3& to);
 
 }  // namespace incise::contact

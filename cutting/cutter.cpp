@@ -25,7 +25,7 @@ Split carry_out(const CutPlan& plan, Mesh& mesh) {
     if (plan.is_empty()) return {};
     Split done{execute(plan, mesh), {}};
     for (const topology::FacePair& pair : done.changes.faces_opened) {
-        if (!mesh.is_alive(pair.a.element) || !mesh.is_alive(pair.b.element)) continue;
+        if (!mesh.is_alive(pair.a.cell) || !mesh.is_alive(pair.b.cell)) continue;
         ++done.report.faces_opened;
         done.report.cut_area += topology::rest_area(mesh, pair.a);
     }
@@ -62,10 +62,10 @@ std::optional<topology::CellPoint> Cutter::tissue_at(const Mesh& mesh,
     std::optional<topology::CellPoint> found;
     boxes_.for_each_near(
         mesh, [&](const Box& box) { return box.intersects(near); },
-        [&](ElementId e) {
+        [&](CellId e) {
             if (found) return;
             Box box;
-            for (const NodeId n : mesh.corners(e)) box.extend(positions[n.index()]);
+            for (const VertexId n : mesh.corners(e)) box.extend(positions[n.index()]);
             if (!box.contains(x)) return;
             constexpr double rounding = 1e-9;  // of the size of the element
             const topology::CellPoint point = topology::point_near(mesh, e, positions, x);
@@ -171,14 +171,14 @@ std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) cons
     std::vector<FaceId> found;
     if (cut.front.is_empty()) return found;
     const SweptEdge edge(cut.edge, cut.edge);
-    for (const ElementId e : mesh.elements())
+    for (const CellId e : mesh.elements())
         for (int k = 0; k < traits(mesh.kind(e)).num_faces; ++k) {
             const FaceId face{e, k};
             if (mesh.face_size(face) != 3) continue;
             std::array<MovingPoint, 3> triangle;
             bool is_odd = false;
             for (int p = 0; p < 3; ++p) {
-                const NodeId n = mesh.face_corner(face, p);
+                const VertexId n = mesh.face_corner(face, p);
                 triangle[static_cast<std::size_t>(p)] = {now_[n], now_[n]};
                 is_odd ^= cut.front.is_crossed(n, mesh.face_corner(face, (p + 1) % 3));
             }

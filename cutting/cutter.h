@@ -149,7 +149,7 @@ class Cutter {
     SnapHistory snap_history_;
     std::vector<Cut> cuts_;  // by CutId
     // Positions before and after the last motion, by node id.
-    topology::NodeField<Vec3> before_, now_;
+    topology::NodeField<VertexId, Vec3> before_, now_;
     OwnEdit own_edit_;
 };
 

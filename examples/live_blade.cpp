@@ -17,7 +17,7 @@ namespace {
 /// What a renderer has of a body: triangles over points, and which of them are faces of cuts.
 struct Picture {
     std::vector<Vec3> points;
-    std::vector<std::array<NodeId, 3>> triangles;
+    std::vector<std::array<VertexId, 3>> triangles;
     std::vector<bool> is_cut;
     std::size_t num_uploaded = 0;
 

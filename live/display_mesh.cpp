@@ -8,7 +8,7 @@ namespace incise::live {
 
 DisplayMesh::DisplayMesh(const topology::Mesh& mesh) {
     std::set<int> regions;
-    for (const ElementId e : mesh.elements()) regions.insert(mesh.region(e));
+    for (const CellId e : mesh.elements()) regions.insert(mesh.region(e));
     regions_.assign(regions.begin(), regions.end());
 }
 
@@ -21,7 +21,7 @@ void DisplayMesh::take(const topology::BoundarySurface& surface, const topology:
     const auto triangles = surface.triangles();
     triangles_.resize(triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-        const ElementId e = surface.faces()[t].element;
+        const CellId e = surface.faces()[t].cell;
         const auto region = std::ranges::lower_bound(regions_, mesh.region(e));
         std::uint32_t tag = static_cast<std::uint32_t>(region - regions_.begin());
         if (surface.is_cut()[t]) tag |= is_cut;
@@ -29,7 +29,7 @@ void DisplayMesh::take(const topology::BoundarySurface& surface, const topology:
     }
 }
 
-std::uint32_t DisplayMesh::vertex(NodeId n, std::uint32_t tag, ElementId e) {
+std::uint32_t DisplayMesh::vertex(VertexId n, std::uint32_t tag, CellId e) {
     std::uint32_t* link = &first_[n.index()];
     for (; *link != none; link = &next_[*link])
         if (tags_[*link] == tag) return *link;

@@ -30,21 +30,21 @@ class DisplayMesh {
 
     std::span<const std::array<std::uint32_t, 3>> triangles() const { return triangles_; }
     /// Returns the node of each vertex.
-    std::span<const NodeId> nodes() const { return nodes_; }
+    std::span<const VertexId> nodes() const { return nodes_; }
     std::span<const std::uint32_t> tags() const { return tags_; }
     /// Returns an element at each vertex, to take the results of.
-    std::span<const ElementId> elements() const { return elements_; }
+    std::span<const CellId> elements() const { return elements_; }
     /// Returns the numbers of the regions of the body, ascending.
     std::span<const int> regions() const { return regions_; }
 
   private:
-    std::uint32_t vertex(NodeId n, std::uint32_t tag, ElementId e);
+    std::uint32_t vertex(VertexId n, std::uint32_t tag, CellId e);
 
     std::vector<int> regions_;
     std::vector<std::array<std::uint32_t, 3>> triangles_;
-    std::vector<NodeId> nodes_;
+    std::vector<VertexId> nodes_;
     std::vector<std::uint32_t> tags_;
-    std::vector<ElementId> elements_;
+    std::vector<CellId> elements_;
     // Vertices of a node are a list: the first by node, and the next by vertex.
     static constexpr std::uint32_t none = 0xffffffffu;
     std::vector<std::uint32_t> first_, next_;

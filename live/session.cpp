@@ -55,7 +55,7 @@ Session::Session(scenario::Scenario scenario, double tick, std::uint64_t num_tic
       why_no_contact_(scenario::why_no_contact(simulation_.scenario().dynamics,
                                                simulation_.scenario().contact)),
       element_size_(topology::mean_element_length(simulation_.mesh())) {
-    for (const NodeId n : simulation_.mesh().nodes())
+    for (const VertexId n : simulation_.mesh().nodes())
         box_.extend(simulation_.mesh().rest_position(n));
 }
 
@@ -272,7 +272,7 @@ std::uint64_t Session::checksum() const {
         sum = (std::rotl(sum, 29) ^ std::bit_cast<std::uint64_t>(value)) * 0x9E3779B97F4A7C15u;
     };
     const auto positions = world().positions(), velocities = world().velocities();
-    for (const NodeId n : world().mesh().nodes())
+    for (const VertexId n : world().mesh().nodes())
         for (int i = 0; i < 3; ++i) {
             mix(positions[n.index()][i]);
             mix(velocities[n.index()][i]);

@@ -17,7 +17,7 @@ const Handle::Rows& Handle::rows() {
     rows_.are_ids = mesh.num_nodes() == mesh.node_capacity();
     if (rows_.are_ids) return rows_;
     rows_.of_node.assign(mesh.node_capacity(), -1);
-    for (const NodeId n : mesh.nodes()) {
+    for (const VertexId n : mesh.nodes()) {
         rows_.of_node[n.index()] = static_cast<std::int64_t>(rows_.nodes.size());
         rows_.nodes.push_back(n);
     }
@@ -111,7 +111,7 @@ Pose given_pose(const py::handle& object) {
     return object.cast<Pose>();
 }
 
-std::vector<NodeId> nodes_of(Handle& handle, const py::object& rows) {
+std::vector<VertexId> nodes_of(Handle& handle, const py::object& rows) {
     const py::array given = py::array::ensure(rows);
     if (!given || given.ndim() != 1 ||
         (given.size() > 0 && given.dtype().kind() != 'i' && given.dtype().kind() != 'u')) {
@@ -126,13 +126,13 @@ std::vector<NodeId> nodes_of(Handle& handle, const py::object& rows) {
     if (!array) throw py::error_already_set();
     const Handle::Rows& known = handle.rows();
     const auto num_rows = static_cast<std::int64_t>(handle.driver.world().mesh().num_nodes());
-    std::vector<NodeId> nodes;
+    std::vector<VertexId> nodes;
     for (py::ssize_t i = 0; i < array.size(); ++i) {
         const std::int64_t row = array.at(i);
         if (row < 0 || row >= num_rows)
             throw InputError("there is no node " + std::to_string(row) + ": the world has " +
                              std::to_string(num_rows));
-        nodes.push_back(known.are_ids ? NodeId(static_cast<std::size_t>(row))
+        nodes.push_back(known.are_ids ? VertexId(static_cast<std::size_t>(row))
                                       : known.nodes[static_cast<std::size_t>(row)]);
     }
     return nodes;

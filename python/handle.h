@@ -43,9 +43,9 @@ struct Handle {
     struct Rows {
         std::uint64_t version = std::numeric_limits<std::uint64_t>::max();
         bool are_ids = true;                ///< all nodes live: rows are ids
-        std::vector<NodeId> nodes;          ///< empty if rows are ids
+        std::vector<VertexId> nodes;        ///< empty if rows are ids
         std::vector<std::int64_t> of_node;  ///< by id; -1 for dead nodes; empty if rows are ids
-        std::int64_t row(NodeId n) const { return are_ids ? n.value : of_node[n.index()]; }
+        std::int64_t row(VertexId n) const { return are_ids ? n.value : of_node[n.index()]; }
     };
     const Rows& rows();
 
@@ -131,7 +131,7 @@ void refuse_unknown(const py::kwargs& unknown, const char* function,
 /// Returns the pose that Python passed. Throws TypeError for anything else.
 Pose given_pose(const py::handle& object);
 /// Returns rows of an array of points as nodes of a world. Throws InputError for other rows.
-std::vector<NodeId> nodes_of(Handle& handle, const py::object& rows);
+std::vector<VertexId> nodes_of(Handle& handle, const py::object& rows);
 /// Returns a vector from any three numbers. Throws TypeError or InputError, with the name.
 Vec3 vector_from(const py::handle& object, const std::string& name);
 /// Returns points from anything of shape (N, 3).

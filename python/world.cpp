@@ -82,12 +82,12 @@ Tool add_tool(const World& world, const std::string& name, const py::dict& defin
 Constraint grasp(const World& world, const std::string& name, const py::object& nodes,
                  const std::optional<Pose>& pose) {
     driver_of(world);
-    std::vector<NodeId> held = nodes_of(*world, nodes);
+    std::vector<VertexId> held = nodes_of(*world, nodes);
     if (held.empty()) throw InputError("grasp '" + name + "': it has no node");
     // The conversion may have run code of the user, which can have used the world.
     WorldDriver& driver = driver_of(world);
     Pose frame;
-    for (const NodeId n : held)
+    for (const VertexId n : held)
         frame.position += driver.world().positions()[n.index()] / static_cast<double>(held.size());
     driver.grasp(name, std::move(held), pose.value_or(frame));
     return {world, name};

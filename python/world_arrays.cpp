@@ -89,7 +89,7 @@ py::array_t<double> at_nodes(const World& world, std::span<const Vec3> values) {
     if (rows.are_ids) return matrix_of(values);
     py::array_t<double> array({static_cast<py::ssize_t>(rows.nodes.size()), py::ssize_t{3}});
     double* out = array.mutable_data();
-    for (const NodeId n : rows.nodes)
+    for (const VertexId n : rows.nodes)
         for (int c = 0; c < 3; ++c) *out++ = values[n.index()][c];
     return array;
 }
@@ -103,7 +103,7 @@ py::array_t<double> masses(const World& world) {
     if (rows.are_ids)
         std::ranges::copy(all, out);
     else
-        for (const NodeId n : rows.nodes) *out++ = all[n.index()];
+        for (const VertexId n : rows.nodes) *out++ = all[n.index()];
     return array;
 }
 
@@ -124,7 +124,7 @@ py::array_t<std::int64_t> node_ids(const World& world) {
     const topology::Mesh& mesh = driver_of(world).world().mesh();
     py::array_t<std::int64_t> array(static_cast<py::ssize_t>(mesh.num_nodes()));
     std::int64_t* out = array.mutable_data();
-    for (const NodeId n : mesh.nodes()) *out++ = mesh.label(n);
+    for (const VertexId n : mesh.nodes()) *out++ = mesh.label(n);
     return array;
 }
 
@@ -134,8 +134,8 @@ py::object cells(const World& world) {
         const Handle::Rows& rows = world->rows();
         const topology::Mesh& mesh = world->driver.world().mesh();
         CellArrays arrays(true);
-        for (const ElementId e : mesh.elements())
-            for (const NodeId n : mesh.corners(e)) arrays.of(mesh.kind(e)).push_back(rows.row(n));
+        for (const CellId e : mesh.elements())
+            for (const VertexId n : mesh.corners(e)) arrays.of(mesh.kind(e)).push_back(rows.row(n));
         return arrays.object(true);
     });
 }
@@ -145,7 +145,7 @@ py::object regions(const World& world) {
     return kept(world, world->regions, [&] {
         const topology::Mesh& mesh = world->driver.world().mesh();
         CellArrays arrays(false);
-        for (const ElementId e : mesh.elements()) arrays.of(mesh.kind(e)).push_back(mesh.region(e));
+        for (const CellId e : mesh.elements()) arrays.of(mesh.kind(e)).push_back(mesh.region(e));
         return arrays.object(true);
     });
 }
@@ -164,7 +164,7 @@ py::object surface(const World& world) {
         std::vector<bool> is_on(body.mesh().num_nodes(), false);
         std::int64_t* out = made.triangles.mutable_data();
         for (const auto& triangle : boundary.triangles())
-            for (const NodeId n : triangle) {
+            for (const VertexId n : triangle) {
                 *out = rows.row(n);
                 is_on[static_cast<std::size_t>(*out++)] = true;
             }
@@ -205,7 +205,7 @@ py::object physics(const World& world) {
     }
     const topology::Mesh& material = world->driver.world().mesh();
     auto row = arrays.cell_of_element.begin();
-    for (const ElementId e : material.elements())
+    for (const CellId e : material.elements())
         fragments.of(material.kind(e)).push_back(number[static_cast<std::size_t>(*row++)]);
     made.cells = cells.object(true);
     made.fragments = fragments.object(true);

@@ -117,7 +117,7 @@ class WorldDriver {
 
     const std::vector<NamedConstraint>& constraints() const { return constraints_; }
     /// Grasps nodes at their present positions. Throws InputError for a name that is taken.
-    void grasp(const std::string& name, std::vector<NodeId> nodes, const Pose& pose);
+    void grasp(const std::string& name, std::vector<VertexId> nodes, const Pose& pose);
     void set_grasp_target(const std::string& name, const Pose& pose);
     void release(const std::string& name);
 

@@ -166,7 +166,7 @@ auto find_constraint(auto& constraints, const std::string& name) {
 }
 }  // namespace
 
-void WorldDriver::grasp(const std::string& name, std::vector<NodeId> nodes, const Pose& pose) {
+void WorldDriver::grasp(const std::string& name, std::vector<VertexId> nodes, const Pose& pose) {
     require_name("grasp", name);
     if (std::ranges::find(constraints_, name, &NamedConstraint::name) != constraints_.end())
         throw InputError("grasp '" + name + "': the world has a constraint of this name already");

@@ -49,55 +49,55 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
                            std::span<const scenario::Field> fields, const ContactForces* contact)
     : fields_(fields.begin(), fields.end()) {
     const topology::Mesh& mesh = model.mesh();
-    std::vector<NodeId> nodes;
+    std::vector<VertexId> nodes;
     const auto positions = model.mesh_positions();
-    frame_.mesh = topology::to_mesh_data(mesh, positions, &nodes, &elements_);
+    frame_.mesh = topology::to_mesh_data(mesh, positions, &nodes, &cells_);
     frame_.mesh.carriers = topology::carriers_of(mesh, model.fragments());
-    frame_.mesh.cut_faces.resize(elements_.size());  // all frames of a run have the same arrays
+    frame_.mesh.cut_faces.resize(cells_.size());  // all frames of a run have the same arrays
     frame_.time = time;
 
     auto& points = frame_.point_fields;
-    const auto rest = [&](NodeId n) { return mesh.rest_position(n); };
+    const auto rest = [&](VertexId n) { return mesh.rest_position(n); };
     if (has(scenario::Field::displacement)) {
-        points.push_back(field<float>(name(scenario::Field::displacement), 3, nodes, [&](NodeId n) {
-            return Vec3(positions[n.index()] - mesh.rest_position(n));
-        }));
+        points.push_back(field<float>(
+            name(scenario::Field::displacement), 3, nodes,
+            [&](VertexId n) { return Vec3(positions[n.index()] - mesh.rest_position(n)); }));
         frame_.active_vectors = name(scenario::Field::displacement);
     }
     points.push_back(field<double>("rest_position", 3, nodes, rest));
     if (has(scenario::Field::velocity))
-        points.push_back(field<float>(name(scenario::Field::velocity), 3, nodes, [&](NodeId n) {
+        points.push_back(field<float>(name(scenario::Field::velocity), 3, nodes, [&](VertexId n) {
             return model.mesh_velocities()[n.index()];
         }));
     if (has(scenario::Field::force)) {
         const auto forces = model.mesh_elastic_forces();
         points.push_back(field<float>(name(scenario::Field::force), 3, nodes,
-                                      [&](NodeId n) { return forces[n.index()]; }));
+                                      [&](VertexId n) { return forces[n.index()]; }));
     }
     if (has(scenario::Field::mass)) {
         const auto masses = model.mesh_masses();
         points.push_back(field<double>(name(scenario::Field::mass), 1, nodes,
-                                       [&](NodeId n) { return masses[n.index()]; }));
+                                       [&](VertexId n) { return masses[n.index()]; }));
     }
     points.push_back(
-        field<std::int64_t>("node_id", 1, nodes, [&](NodeId n) { return mesh.label(n); }));
+        field<std::int64_t>("node_id", 1, nodes, [&](VertexId n) { return mesh.label(n); }));
 
     if (contact) add_contact(model, nodes, *contact);
     if (has(scenario::Field::physics)) add_physics(model);
 
     auto& cells = frame_.cell_fields;
-    cells.push_back(field<std::int64_t>("element_id", 1, elements_,
-                                        [&](ElementId e) { return mesh.label(e); }));
+    cells.push_back(
+        field<std::int64_t>("element_id", 1, cells_, [&](CellId e) { return mesh.label(e); }));
     const topology::FragmentMesh& fragments = model.fragments();
     if (const auto fibres = model.fibres(); !fibres.empty())
-        cells.push_back(field<double>("fibre", 3, elements_, [&](ElementId e) {
+        cells.push_back(field<double>("fibre", 3, cells_, [&](CellId e) {
             return fibres[fragments.fragment_of_cell(e).index()];
         }));
     if (has(scenario::Field::J) || has(scenario::Field::energy_density) ||
         has(scenario::Field::stress) || has(scenario::Field::von_mises))
         snapshot_.emplace(model);
     if (snapshot_)
-        for (const ElementId e : elements_) fragments_.push_back(fragments.fragment_of_cell(e));
+        for (const CellId e : cells_) fragments_.push_back(fragments.fragment_of_cell(e));
 }
 
 /// Adds the nodes and elements of the physics, which are not those of the frame.
@@ -120,7 +120,7 @@ void FrameBuilder::add_physics(const physics::Model& model) {
 
 /// Adds the force of contact at each node, and its part against the surface over the area of the
 /// node: a third of the triangles there that face the force, at present.
-void FrameBuilder::add_contact(const physics::Model& model, const std::vector<NodeId>& nodes,
+void FrameBuilder::add_contact(const physics::Model& model, const std::vector<VertexId>& nodes,
                                const ContactForces& forces) {
     const topology::Mesh& mesh = model.mesh();
     const auto positions = model.mesh_positions();
@@ -137,7 +137,7 @@ void FrameBuilder::add_contact(const physics::Model& model, const std::vector<No
                 area[n] += third;
     };
     if (!forces.empty())
-        for (const ElementId e : mesh.elements())
+        for (const CellId e : mesh.elements())
             for (int f = 0; f < mesh.num_faces(e); ++f) {
                 if (mesh.neighbor({e, f}).is_valid()) continue;
                 const auto corners = mesh.corners(e);
@@ -150,8 +150,8 @@ void FrameBuilder::add_contact(const physics::Model& model, const std::vector<No
             }
     auto& points = frame_.point_fields;
     points.push_back(
-        field<float>("contact_force", 3, nodes, [&](NodeId n) { return force[n.index()]; }));
-    points.push_back(field<float>("contact_pressure", 1, nodes, [&](NodeId n) {
+        field<float>("contact_force", 3, nodes, [&](VertexId n) { return force[n.index()]; }));
+    points.push_back(field<float>("contact_pressure", 1, nodes, [&](VertexId n) {
         const double square = area[n.index()].squaredNorm();
         return square > 0.0 ? -force[n.index()].dot(area[n.index()]) / square : 0.0;
     }));

@@ -15,7 +15,7 @@
 namespace incise::runner {
 
 /// The forces of contact on the nodes of a mesh, N, at which they are not zero, in ascending order.
-using ContactForces = std::vector<std::pair<NodeId, Vec3>>;
+using ContactForces = std::vector<std::pair<VertexId, Vec3>>;
 
 /// A builder of one frame. The points of the frame are the current positions. It has the fields
 /// rest_position, node_id, element_id, cut_faces and region, and the requested fields. Bit f of
@@ -45,11 +45,12 @@ class FrameBuilder {
   private:
     bool has(scenario::Field field) const;
     void add_physics(const physics::Model& model);
-    void add_contact(const physics::Model& model, const std::vector<NodeId>& nodes,
+    void add_contact(const physics::Model& model, const std::vector<VertexId>& nodes,
                      const ContactForces& forces);
 
     std::vector<scenario::Field> fields_;
-    std::vector<ElementId> elements_, fragments_;       // by row
+    std::vector<CellId> cells_;                         // by row
+    std::vector<ElementId> fragments_;                  // by row
     std::optional<physics::ElementSnapshot> snapshot_;  // if a field needs it
     io::Frame frame_;
 };

@@ -27,11 +27,11 @@ std::uint64_t fingerprint_of(const physics::Model& model,
     ArchiveWriter ar;
     for (const Vec3& x : mesh.rest_positions()) ar(x);
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const ElementId e(i);
+        const CellId e(i);
         ar(mesh.label(e), mesh.kind(e), mesh.region(e));
-        for (const NodeId n : mesh.corners(e)) ar(n, mesh.label(n));
+        for (const VertexId n : mesh.corners(e)) ar(n, mesh.label(n));
         for (int f = 0; f < mesh.num_faces(e); ++f) {
-            ar(mesh.neighbor({e, f}).element);
+            ar(mesh.neighbor({e, f}).cell);
             if (mesh.is_on_cut({e, f})) ar(f);
         }
     }

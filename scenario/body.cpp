@@ -75,7 +75,7 @@ std::vector<Id> choose(std::vector<Id> (*select)(const topology::Mesh&, const si
 physics::Constraint build_constraint(const ConstraintSpec& spec, const topology::Mesh& mesh) {
     physics::Constraint constraint;
     constraint.name = spec.name;
-    constraint.nodes = physics::NodeSet(
+    constraint.nodes = physics::VertexSet(
         choose(sim::select_nodes, mesh, spec.where, "constraint '" + spec.name + "'", "node"));
     constraint.components = spec.fixed;
     constraint.displacement = curve(spec.move);
@@ -95,7 +95,7 @@ physics::Load build_load(const LoadSpec& spec, const topology::Mesh& mesh) {
     load.factor = curve(spec.factor);
     if (const auto* nodal = std::get_if<NodalForce>(&spec.load)) {
         auto nodes = choose(sim::select_nodes, mesh, spec.where, what, "node");
-        load.kind = physics::NodalLoad{physics::NodeSet(std::move(nodes)), nodal->force, {}};
+        load.kind = physics::NodalLoad{physics::VertexSet(std::move(nodes)), nodal->force, {}};
     } else if (const auto* traction = std::get_if<Traction>(&spec.load)) {
         load.kind = physics::TractionLoad{faces(), traction->stress};
     } else if (const auto* pressure = std::get_if<Pressure>(&spec.load)) {
@@ -126,7 +126,7 @@ std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
         return {};
     std::vector<Vec3> fibres(mesh.element_capacity(), Vec3::Zero());
     for (std::size_t i = 0; i < fibres.size(); ++i) {
-        const ElementId e(i);
+        const CellId e(i);
         if (!mesh.is_alive(e)) continue;
         const std::size_t material = table.of_region.at(mesh.region(e));
         if (!materials[material].has_fibres()) continue;
@@ -151,7 +151,7 @@ std::vector<Vec3> build_fibres(const std::vector<MaterialSpec>& specs,
 
 std::set<int> regions_of(const topology::Mesh& mesh) {
     std::set<int> regions;
-    for (const ElementId e : mesh.elements()) regions.insert(mesh.region(e));
+    for (const CellId e : mesh.elements()) regions.insert(mesh.region(e));
     return regions;
 }
 

@@ -147,7 +147,7 @@ std::vector<std::string> implausible(const Scenario& scenario, const topology::M
                                      const physics::MaterialTable* materials) {
     Findings findings;
     Box body;
-    for (const NodeId n : mesh.nodes()) body.extend(mesh.rest_position(n));
+    for (const VertexId n : mesh.nodes()) body.extend(mesh.rest_position(n));
     if (body.isEmpty()) return {};
     look_at_size(scenario, body, findings);
     if (materials) look_at_materials(scenario, *materials, findings);

@@ -12,7 +12,7 @@ namespace incise::scenario {
 namespace {
 
 /// Returns the least altitude of a tetrahedron, or of its carrier, divided by the longest edge.
-double thinness(const topology::Mesh& mesh, ElementId e) {
+double thinness(const topology::Mesh& mesh, CellId e) {
     const topology::Carriers& carriers = mesh.source_carriers();
     std::array<Vec3, 4> x;
     if (carriers.is_empty() || carriers.of_cell[e.index()] == topology::Carriers::whole)
@@ -31,8 +31,8 @@ std::optional<std::string> warning_of_thin_elements(const topology::Mesh& mesh) 
     constexpr double least_thinness = 1e-2;  // below it, floats lose strains of a few per cent
     std::size_t num_thin = 0;
     double thinnest = 1.0;
-    ElementId thinnest_element;
-    for (const ElementId e : mesh.elements()) {
+    CellId thinnest_element;
+    for (const CellId e : mesh.elements()) {
         if (mesh.kind(e) != topology::CellKind::tetrahedron) continue;
         const double ratio = thinness(mesh, e);
         if (ratio >= least_thinness) continue;

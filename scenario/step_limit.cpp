@@ -32,8 +32,7 @@ namespace {
     if (dynamics.time_step)
         text << "raise dynamics.time_step";
     else
-        text << "check shape and material of element "
-             << model.mesh().label(model.limiting_element())
+        text << "check shape and material of element " << model.mesh().label(model.limiting_cell())
              << ", which is the smallest or stiffest for its mass";
     if (num_steps > 0) throw PhysicsError(text.str());  // the cause is an edit, not the scenario
     throw BodyError(dynamics.time_step ? dynamics.time_step_location : dynamics.end_time_location,

@@ -111,7 +111,7 @@ cutting::ToolShape shape_of(const CutSpec& cut, std::vector<std::string>& warnin
 }  // namespace
 
 CutMode usual_mode(const topology::Mesh& mesh) {
-    for (const ElementId e : mesh.elements())
+    for (const CellId e : mesh.elements())
         if (mesh.kind(e) != topology::CellKind::tetrahedron) return CutMode::separate;
     return CutMode::split;
 }
@@ -128,7 +128,7 @@ ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
     const bool splits =
         blade ? blade->mode == CutMode::split : std::holds_alternative<CutSpec>(spec.kind);
     if (!splits) return spec;
-    for (const ElementId e : mesh.elements())
+    for (const CellId e : mesh.elements())
         if (mesh.kind(e) == topology::CellKind::tetrahedron) return spec;
     throw InputError("tool '" + spec.name +
                      "' splits tetrahedra, and the mesh has none; use a blade with mode = "
@@ -184,7 +184,7 @@ std::optional<std::string> warning_of_tissue_inside(const ScriptedTool& tool,
     const Box box = cutting::box_of(probe->shape);
     std::size_t count = 0;
     Vec3 first = Vec3::Zero();
-    for (const NodeId n : mesh.nodes()) {
+    for (const VertexId n : mesh.nodes()) {
         const Vec3 x = pose.to_tool(mesh.rest_position(n));
         // What lies on the surface is not inside.
         if (!Box(box.min() + margin, box.max() - margin).contains(x)) continue;

@@ -13,9 +13,9 @@ namespace incise::sim {
 
 namespace {
 
-double least_altitude(const topology::Mesh& mesh, ElementId e) {
+double least_altitude(const topology::Mesh& mesh, CellId e) {
     std::vector<Vec3> x;
-    for (const NodeId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
+    for (const VertexId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
     return topology::min_altitude(mesh.kind(e), x);
 }
 
@@ -26,9 +26,9 @@ struct Divided {
 };
 
 Divided divided_elements(const topology::Mesh& mesh, const topology::ChangeSet& changes) {
-    std::vector<ElementId> parents;
+    std::vector<CellId> parents;
     Divided divided;
-    for (const topology::ElementRecord& record : changes.elements_added) {
+    for (const topology::CellRecord& record : changes.elements_added) {
         if (!record.parent.is_valid()) continue;
         divided.least_altitude = std::min(divided.least_altitude, least_altitude(mesh, record.id));
         if (record.parent.index() < changes.element_capacity_before)
@@ -36,7 +36,7 @@ Divided divided_elements(const topology::Mesh& mesh, const topology::ChangeSet& 
     }
     std::sort(parents.begin(), parents.end());
     parents.erase(std::unique(parents.begin(), parents.end()), parents.end());
-    for (const ElementId e : parents)
+    for (const CellId e : parents)
         if (mesh.is_alive(e))
             divided.least_altitude = std::min(divided.least_altitude, least_altitude(mesh, e));
     divided.num_parents = parents.size();
@@ -45,7 +45,7 @@ Divided divided_elements(const topology::Mesh& mesh, const topology::ChangeSet& 
 
 double least_altitude(const topology::Mesh& mesh) {
     double least = std::numeric_limits<double>::infinity();
-    for (const ElementId e : mesh.elements()) least = std::min(least, least_altitude(mesh, e));
+    for (const CellId e : mesh.elements()) least = std::min(least, least_altitude(mesh, e));
     return least;
 }
 
@@ -143,9 +143,10 @@ double Ledger::energy_error() const {
 double removed_mass(const physics::Model& model, const topology::ChangeSet& changes) {
     double mass = 0.0;
     std::vector<Vec3> x;
-    for (const topology::ElementRecord& record : changes.elements_removed) {
+    for (const topology::CellRecord& record : changes.elements_removed) {
         x.clear();
-        for (const NodeId n : record.corners) x.push_back(model.mesh().rest_positions()[n.index()]);
+        for (const VertexId n : record.corners)
+            x.push_back(model.mesh().rest_positions()[n.index()]);
         mass += model.density(record.region) * topology::signed_volume(record.kind, x);
     }
     return mass;

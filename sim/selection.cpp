@@ -14,7 +14,7 @@ using topology::Mesh;
 
 namespace {
 
-bool is_in_regions(const Mesh& mesh, const Selection& where, ElementId e) {
+bool is_in_regions(const Mesh& mesh, const Selection& where, CellId e) {
     return !where.regions ||
            std::binary_search(where.regions->begin(), where.regions->end(), mesh.region(e));
 }
@@ -46,9 +46,9 @@ std::vector<char> selected(const Mesh& mesh, const Selection& where) {
     require_finite(where);
     std::vector<char> in_regions(mesh.node_capacity(), !where.regions.has_value());
     if (where.regions)
-        for (const ElementId e : mesh.elements())
+        for (const CellId e : mesh.elements())
             if (is_in_regions(mesh, where, e))
-                for (const NodeId n : mesh.corners(e)) in_regions[n.index()] = 1;
+                for (const VertexId n : mesh.corners(e)) in_regions[n.index()] = 1;
     std::vector<char> on_surface(mesh.node_capacity(), !where.surface);
     if (where.surface)
         for (const FaceId f : topology::boundary_faces(mesh))
@@ -61,17 +61,17 @@ std::vector<char> selected(const Mesh& mesh, const Selection& where) {
         for (const std::int64_t label : *where.nodes) {
             const auto named = mesh.nodes_with_label(label);
             if (std::none_of(named.begin(), named.end(),
-                             [&](NodeId n) { return mesh.is_alive(n); }))
+                             [&](VertexId n) { return mesh.is_alive(n); }))
                 throw InputError(
                     "the selection names node " + std::to_string(label) +
                     ", which no element has; the nodes of the mesh are numbered from 0 to " +
                     std::to_string(mesh.num_source_points() - 1));
-            for (const NodeId n : named) is_named[n.index()] = 1;
+            for (const VertexId n : named) is_named[n.index()] = 1;
         }
 
     std::vector<char> result(mesh.node_capacity(), 0);
     for (std::size_t i = 0; i < result.size(); ++i) {
-        const NodeId n(i);
+        const VertexId n(i);
         if (!mesh.is_alive(n)) continue;
         const Vec3& x = mesh.rest_position(n);
         bool is_in = in_regions[i] && on_surface[i] && is_named[i];
@@ -89,9 +89,9 @@ std::vector<char> selected(const Mesh& mesh, const Selection& where) {
 
 }  // namespace
 
-std::vector<NodeId> select_nodes(const Mesh& mesh, const Selection& where) {
+std::vector<VertexId> select_nodes(const Mesh& mesh, const Selection& where) {
     const auto is_in = selected(mesh, where);
-    std::vector<NodeId> nodes;
+    std::vector<VertexId> nodes;
     for (std::size_t i = 0; i < is_in.size(); ++i)
         if (is_in[i]) nodes.emplace_back(i);
     return nodes;
@@ -101,7 +101,7 @@ std::vector<FaceId> select_faces(const Mesh& mesh, const Selection& where) {
     const auto is_in = selected(mesh, without_regions(where));
     std::vector<FaceId> faces = topology::boundary_faces(mesh);
     std::erase_if(faces, [&](FaceId f) {
-        if (!is_in_regions(mesh, where, f.element)) return true;
+        if (!is_in_regions(mesh, where, f.cell)) return true;
         for (int p = 0; p < mesh.face_size(f); ++p)
             if (!is_in[mesh.face_corner(f, p).index()]) return true;
         return false;
@@ -109,13 +109,14 @@ std::vector<FaceId> select_faces(const Mesh& mesh, const Selection& where) {
     return faces;
 }
 
-std::vector<ElementId> select_elements(const Mesh& mesh, const Selection& where) {
+std::vector<CellId> select_elements(const Mesh& mesh, const Selection& where) {
     const auto is_in = selected(mesh, without_regions(where));
-    std::vector<ElementId> elements;
-    for (const ElementId e : mesh.elements()) {
+    std::vector<CellId> elements;
+    for (const CellId e : mesh.elements()) {
         if (!is_in_regions(mesh, where, e)) continue;
         const auto corners = mesh.corners(e);
-        if (std::all_of(corners.begin(), corners.end(), [&](NodeId n) { return is_in[n.index()]; }))
+        if (std::all_of(corners.begin(), corners.end(),
+                        [&](VertexId n) { return is_in[n.index()]; }))
             elements.push_back(e);
     }
     return elements;
@@ -125,7 +126,7 @@ void require_selected(std::size_t count, const Mesh& mesh, const std::string& wh
                       const std::string& things) {
     if (count > 0) return;
     Eigen::AlignedBox3d box;
-    for (const NodeId n : mesh.nodes()) box.extend(mesh.rest_position(n));
+    for (const VertexId n : mesh.nodes()) box.extend(mesh.rest_position(n));
     const Eigen::IOFormat list(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
     std::ostringstream text;
     text << what << " selects no " << things << "; the mesh lies between "

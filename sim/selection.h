@@ -46,7 +46,7 @@ struct Selection {
 /// of its elements, including the nodes that it shares with other regions.
 /// Throws InputError if no element has a node that `where.nodes` names, or if a number of a region
 /// is not finite.
-std::vector<NodeId> select_nodes(const topology::Mesh& mesh, const Selection& where);
+std::vector<VertexId> select_nodes(const topology::Mesh& mesh, const Selection& where);
 
 /// Returns the boundary faces whose element is in `where.regions` and whose nodes all meet the
 /// other conditions, in ascending order. Throws InputError as select_nodes() does.
@@ -54,7 +54,7 @@ std::vector<FaceId> select_faces(const topology::Mesh& mesh, const Selection& wh
 
 /// Returns the elements that are in `where.regions` and whose nodes all meet the other conditions,
 /// in ascending order. Throws InputError as select_nodes() does.
-std::vector<ElementId> select_elements(const topology::Mesh& mesh, const Selection& where);
+std::vector<CellId> select_elements(const topology::Mesh& mesh, const Selection& where);
 
 /// Throws InputError if `count` is zero. The message gives the bounding box of the mesh.
 /// @param what    what selects, such as "constraint 'clamp'"

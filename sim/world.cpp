@@ -224,9 +224,9 @@ ConstraintId World::add_constraint(physics::Constraint constraint) {
     return {p.constraints.add()};
 }
 
-ConstraintId World::grasp(std::string name, std::vector<NodeId> nodes, const Pose& pose) {
+ConstraintId World::grasp(std::string name, std::vector<VertexId> nodes, const Pose& pose) {
     Parts& p = *parts_;
-    for (const NodeId n : nodes)
+    for (const VertexId n : nodes)
         if (!n.is_valid() || n.index() >= p.mesh.node_capacity())
             throw InputError("grasp '" + name + "': there is no node " + std::to_string(n.value));
     if (!pose.is_sound()) throw InputError("grasp '" + name + "': its pose is none");
@@ -313,7 +313,7 @@ std::vector<double> World::masses() const { return parts_->model.mesh_masses(); 
 physics::BodyArrays World::body_arrays() const { return physics::body_arrays(parts_->model); }
 const physics::Model& World::model() const { return parts_->model; }
 const cutting::Cutter& World::cutter() const { return parts_->cutter; }
-std::optional<std::vector<std::pair<NodeId, Vec3>>> World::contact_forces() const {
+std::optional<std::vector<std::pair<VertexId, Vec3>>> World::contact_forces() const {
     if (!parts_->contact) return std::nullopt;
     return parts_->contact->node_forces();
 }

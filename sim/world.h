@@ -126,10 +126,10 @@ struct StepReport {
 
 /// Thrown if a tool meets something that it cannot cut.
 struct ToolError : InputError {
-    ToolError(const std::string& text, ToolId which, ElementId what)
+    ToolError(const std::string& text, ToolId which, CellId what)
         : InputError(text), tool(which), undividable(what) {}
     ToolId tool;
-    ElementId undividable;  ///< no tetrahedron, and the tool would divide it; else invalid
+    CellId undividable;  ///< no tetrahedron, and the tool would divide it; else invalid
 };
 
 /// A deformable body with its boundary conditions and the tools that cut it.
@@ -247,7 +247,7 @@ class World {
     /// example that of a gripper.
     /// @param pose  the present pose of the frame, m
     /// Throws InputError as add_constraint() does, and for an invalid pose.
-    ConstraintId grasp(std::string name, std::vector<NodeId> nodes, const Pose& pose);
+    ConstraintId grasp(std::string name, std::vector<VertexId> nodes, const Pose& pose);
     /// Sets the pose of the frame of a grasp at the end of the next step. Without a call the frame
     /// does not move. Throws InputError if the constraint is no grasp.
     void set_grasp_pose(ConstraintId grasp, const Pose& pose);
@@ -285,7 +285,7 @@ class World {
     /// Returns the forces of contact in the last step, N, at the nodes of the mesh at which they
     /// are not zero, in ascending order of the nodes; nothing for a world without contact. Graspers
     /// count; threads and the force of cutting, which act inside the tissue, do not.
-    std::optional<std::vector<std::pair<NodeId, Vec3>>> contact_forces() const;
+    std::optional<std::vector<std::pair<VertexId, Vec3>>> contact_forces() const;
 
     void set_num_threads(int n);
 

@@ -44,7 +44,7 @@ void require_curve(const physics::TimeCurve<Value>& curve, const std::string& wh
     }
 }
 
-void require_nodes(const Mesh& mesh, const std::string& what, const physics::NodeSet& nodes) {
+void require_nodes(const Mesh& mesh, const std::string& what, const physics::VertexSet& nodes) {
     if (nodes.members().empty()) throw InputError(what + ": it has no node");
     for (const auto& [n, origin] : nodes.members())
         if (!n.is_valid() || n.index() >= mesh.node_capacity() || !mesh.is_alive(n))
@@ -70,7 +70,7 @@ struct LoadRequirement {
         require(std::isfinite(load.pressure));
     }
     void operator()(const physics::BodyLoad& load) const {
-        for (const ElementId e : load.elements.members()) require_element(e);
+        for (const CellId e : load.elements.members()) require_element(e);
         if (load.elements.members().empty()) throw InputError(what + ": it has no element");
         require(load.force.allFinite());
     }
@@ -79,7 +79,7 @@ struct LoadRequirement {
     void require(bool is_sound) const {
         if (!is_sound) throw InputError(what + ": its value is not finite");
     }
-    void require_element(ElementId e) const {
+    void require_element(CellId e) const {
         if (!e.is_valid() || e.index() >= mesh.element_capacity() || !mesh.is_alive(e))
             throw InputError(what + ": there is no element " + std::to_string(e.value));
     }
@@ -87,10 +87,10 @@ struct LoadRequirement {
         if (faces.members().empty()) throw InputError(what + ": it has no face");
         for (const auto& member : faces.members()) {
             const FaceId f = member.face;
-            require_element(f.element);
-            if (f.face < 0 || f.face >= mesh.num_faces(f.element) || mesh.neighbor(f).is_valid())
+            require_element(f.cell);
+            if (f.face < 0 || f.face >= mesh.num_faces(f.cell) || mesh.neighbor(f).is_valid())
                 throw InputError(what + ": face " + std::to_string(f.face) + " of element " +
-                                 std::to_string(f.element.value) + " is not on the surface");
+                                 std::to_string(f.cell.value) + " is not on the surface");
         }
     }
 };

@@ -31,7 +31,7 @@ physics::MaterialTable materials_of(WorldDef& def, const Mesh& mesh) {
     physics::MaterialTable table{std::move(def.materials), std::move(def.material_of_region),
                                  std::move(def.fibres), def.precision};
     if (table.of_region.empty() && !table.materials.empty())
-        for (const ElementId e : mesh.elements()) table.of_region[mesh.region(e)] = 0;
+        for (const CellId e : mesh.elements()) table.of_region[mesh.region(e)] = 0;
     return table;
 }
 
@@ -247,7 +247,7 @@ void World::Parts::cut_with(ToolId id, double end) {
             std::ostringstream text;
             text << "tool '" << tool.def.name << "', at t = " << end << " s: " << error.what();
             const auto* undividable = dynamic_cast<const cutting::UndividableElement*>(&error);
-            throw ToolError(text.str(), id, undividable ? undividable->element : ElementId());
+            throw ToolError(text.str(), id, undividable ? undividable->element : CellId());
         }
     };
     follow(id, carry_out([&] { return split_with(tool); }), end);

@@ -15,18 +15,18 @@ void sort_and_make_unique(std::vector<T>& values) {
 }
 
 /// Returns the elements, dead ones included, whose boundary faces an edit may have changed.
-std::vector<ElementId> elements_with_other_faces(const ChangeSet& changes) {
-    std::vector<ElementId> touched;
+std::vector<CellId> elements_with_other_faces(const ChangeSet& changes) {
+    std::vector<CellId> touched;
     for (const auto* records : {&changes.elements_added, &changes.elements_removed})
-        for (const ElementRecord& record : *records) {
+        for (const CellRecord& record : *records) {
             touched.push_back(record.id);
             if (record.parent.is_valid()) touched.push_back(record.parent);
         }
-    for (const Rewiring& rewiring : changes.rewired) touched.push_back(rewiring.element);
+    for (const CellRewiring& rewiring : changes.rewired) touched.push_back(rewiring.element);
     for (const auto* pairs : {&changes.faces_opened, &changes.faces_closed})
         for (const FacePair& pair : *pairs) {
-            touched.push_back(pair.a.element);
-            touched.push_back(pair.b.element);
+            touched.push_back(pair.a.cell);
+            touched.push_back(pair.b.cell);
         }
     sort_and_make_unique(touched);
     return touched;
@@ -35,10 +35,10 @@ std::vector<ElementId> elements_with_other_faces(const ChangeSet& changes) {
 }  // namespace
 
 BoundarySurface::BoundarySurface(const Mesh& mesh) : epoch_(mesh) {
-    for (const ElementId e : mesh.elements()) add_faces(mesh, e);
+    for (const CellId e : mesh.elements()) add_faces(mesh, e);
 }
 
-void BoundarySurface::add_faces(const Mesh& mesh, ElementId e) {
+void BoundarySurface::add_faces(const Mesh& mesh, CellId e) {
     for (int f = 0; f < mesh.num_faces(e); ++f) {
         const FaceId face{e, f};
         if (mesh.neighbor(face).is_valid()) continue;
@@ -54,7 +54,7 @@ void BoundarySurface::add_faces(const Mesh& mesh, ElementId e) {
 }
 
 /// Fills the slot of each removed triangle with the last triangle of the list.
-void BoundarySurface::remove_faces(ElementId e) {
+void BoundarySurface::remove_faces(CellId e) {
     const auto row = slots_.find(e);
     if (row == slots_.end()) return;
     std::vector<std::size_t> slots = std::move(row->second);
@@ -66,7 +66,7 @@ void BoundarySurface::remove_faces(ElementId e) {
             triangles_[slot] = triangles_[last];
             faces_[slot] = faces_[last];
             is_cut_[slot] = is_cut_[last];
-            std::ranges::replace(slots_.at(faces_[slot].element), last, slot);
+            std::ranges::replace(slots_.at(faces_[slot].cell), last, slot);
         }
         changed_.push_back(slot);
         changed_.push_back(last);
@@ -80,8 +80,8 @@ void BoundarySurface::apply(const Mesh& mesh, const ChangeSet& changes) {
     if (changes.is_empty()) return;
     epoch_.advance(mesh, changes, "surface");
     const auto touched = elements_with_other_faces(changes);
-    for (const ElementId e : touched) remove_faces(e);
-    for (const ElementId e : touched)
+    for (const CellId e : touched) remove_faces(e);
+    for (const CellId e : touched)
         if (e.index() < mesh.element_capacity() && mesh.is_alive(e)) add_faces(mesh, e);
     // Without calls of take_changes() the list would grow with each edit.
     if (changed_.size() > 2 * triangles_.size() + 1024) sort_and_make_unique(changed_);

@@ -33,7 +33,7 @@ class BoundarySurface {
     void apply(const Mesh& mesh, const ChangeSet& changes);
 
     /// Returns the node ids of each triangle. Shape (T, 3).
-    std::span<const std::array<NodeId, 3>> triangles() const { return triangles_; }
+    std::span<const std::array<VertexId, 3>> triangles() const { return triangles_; }
     /// Returns the face of the mesh that each triangle belongs to. Shape (T).
     std::span<const FaceId> faces() const { return faces_; }
     /// Returns 1 for each triangle of a face on a cut, else 0; see Mesh::is_on_cut(). Shape (T).
@@ -46,13 +46,13 @@ class BoundarySurface {
     std::vector<std::size_t> take_changes();
 
   private:
-    void add_faces(const Mesh& mesh, ElementId e);
-    void remove_faces(ElementId e);
+    void add_faces(const Mesh& mesh, CellId e);
+    void remove_faces(CellId e);
 
-    std::vector<std::array<NodeId, 3>> triangles_;
+    std::vector<std::array<VertexId, 3>> triangles_;
     std::vector<FaceId> faces_;
     std::vector<std::uint8_t> is_cut_;
-    std::unordered_map<ElementId, std::vector<std::size_t>> slots_;  // of an element's triangles
+    std::unordered_map<CellId, std::vector<std::size_t>> slots_;  // of an element's triangles
     std::vector<std::size_t> changed_;
     FollowedEpoch epoch_;
 };

@@ -13,10 +13,10 @@ namespace incise::topology {
 
 namespace {
 
-bool is_whole(const Mesh& mesh, const FragmentMesh& fragments, ElementId e) {
+bool is_whole(const Mesh& mesh, const FragmentMesh& fragments, CellId e) {
     return std::ranges::equal(
         mesh.corners(e), fragments.origins_of(fragments.carrier_of_cell(e)), {},
-        [&](NodeId n) { return mesh.rest_position(n); },
+        [&](VertexId n) { return mesh.rest_position(n); },
         [&](NodeId n) { return fragments.rest_position(n); });
 }
 
@@ -143,10 +143,10 @@ class CarrierCheck {
 Carriers carriers_of(const Mesh& mesh, const FragmentMesh& fragments) {
     Carriers carriers;
     std::vector<std::int64_t> row_of(mesh.element_capacity(), Carriers::whole);
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         carriers.of_cell.push_back(Carriers::whole);
         if (is_whole(mesh, fragments, e)) continue;
-        const ElementId carrier = fragments.carrier_of_cell(e);
+        const CarrierId carrier = fragments.carrier_of_cell(e);
         std::int64_t& row = row_of[carrier.index()];
         if (row == Carriers::whole) {
             row = std::ssize(carriers.corners);

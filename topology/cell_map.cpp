@@ -29,8 +29,8 @@ struct MapItems {
     template <class Map>
     struct Dart_wrapper {
         using Dart_info = DartInfo;
-        using Vertex_attribute = CGAL::Cell_attribute_with_point<Map, NodeId>;
-        using Volume_attribute = CGAL::Cell_attribute<Map, ElementId>;
+        using Vertex_attribute = CGAL::Cell_attribute_with_point<Map, VertexId>;
+        using Volume_attribute = CGAL::Cell_attribute<Map, CellId>;
         using Attributes = std::tuple<Vertex_attribute, void, void, Volume_attribute>;
     };
 };
@@ -80,7 +80,7 @@ struct CellMap::Impl {
     std::vector<Dart> first_darts;           // of each face, by element and face
 
     Dart dart(FaceId f, int position = 0) const {
-        Dart d = first_darts[face_begin[f.element.index()] + static_cast<std::size_t>(f.face)];
+        Dart d = first_darts[face_begin[f.cell.index()] + static_cast<std::size_t>(f.face)];
         for (int p = 0; p < position; ++p) d = complex_beta1(d);
         return d;
     }
@@ -88,7 +88,7 @@ struct CellMap::Impl {
     // only reads.
     Dart complex_beta1(Dart d) const { return const_cast<Complex&>(complex).beta<1>(d); }
 
-    Vertex vertex(NodeId n, const Vec3& rest_position) {
+    Vertex vertex(VertexId n, const Vec3& rest_position) {
         if (n.index() >= vertices.size()) vertices.resize(n.index() + 1, nullptr);
         Vertex& v = vertices[n.index()];
         if (v == nullptr) {
@@ -111,7 +111,7 @@ CellMap::~CellMap() = default;
 CellMap::CellMap(CellMap&&) noexcept = default;
 CellMap& CellMap::operator=(CellMap&&) noexcept = default;
 
-void CellMap::add_element(ElementId e, CellKind kind, std::span<const NodeId> corners,
+void CellMap::add_element(CellId e, CellKind kind, std::span<const VertexId> corners,
                           std::span<const Vec3> rest_positions) {
     Impl& m = *impl_;
     Complex& complex = m.complex;
@@ -131,7 +131,7 @@ void CellMap::add_element(ElementId e, CellKind kind, std::span<const NodeId> co
         const auto face = t.face(f);
         auto& row = darts[static_cast<std::size_t>(f)];
         for (std::size_t p = 0; p < face.size(); ++p) {
-            const NodeId n = corners[static_cast<std::size_t>(face[p])];
+            const VertexId n = corners[static_cast<std::size_t>(face[p])];
             row[p] = complex.create_dart();
             complex.info(row[p]) = {e.value, static_cast<std::int16_t>(f),
                                     static_cast<std::int16_t>(p)};
@@ -154,7 +154,7 @@ void CellMap::add_element(ElementId e, CellKind kind, std::span<const NodeId> co
         }
 }
 
-void CellMap::remove_element(ElementId e) {
+void CellMap::remove_element(CellId e) {
     Impl& m = *impl_;
     const CellTraits& t = traits(m.kinds[e.index()]);
     for (int f = 0; f < t.num_faces; ++f) {
@@ -178,7 +178,7 @@ void CellMap::truncate(std::size_t node_capacity, std::size_t element_capacity) 
     m.first_darts.resize(m.face_begin.back());
 }
 
-void CellMap::set_corner(ElementId e, int corner, NodeId n, const Vec3& rest_position) {
+void CellMap::set_corner(CellId e, int corner, VertexId n, const Vec3& rest_position) {
     Impl& m = *impl_;
     const Vertex to = m.vertex(n, rest_position);
     const CellTraits& t = traits(m.kinds[e.index()]);
@@ -193,7 +193,7 @@ void CellMap::set_corner(ElementId e, int corner, NodeId n, const Vec3& rest_pos
     }
 }
 
-void CellMap::set_incident_element(NodeId n, ElementId e, int corner) {
+void CellMap::set_incident_element(VertexId n, CellId e, int corner) {
     Impl& m = *impl_;
     const CellTraits& t = traits(m.kinds[e.index()]);
     for (int f = 0; f < t.num_faces; ++f) {
@@ -209,7 +209,7 @@ void CellMap::set_incident_element(NodeId n, ElementId e, int corner) {
 
 void CellMap::glue(FaceId a, FaceId b, int shift) {
     Impl& m = *impl_;
-    const int size = static_cast<int>(traits(m.kinds[a.element.index()]).face(a.face).size());
+    const int size = static_cast<int>(traits(m.kinds[a.cell.index()]).face(a.face).size());
     // The dart of `a` from corner p to p + 1 is linked to the dart of `b` in opposite direction.
     Dart d = m.dart(a);
     for (int p = 0; p < size; ++p, d = m.complex.beta<1>(d))
@@ -247,7 +247,7 @@ std::vector<std::string> CellMap::differences_to(const Mesh& mesh) const {
                " elements");
 
     std::size_t expected_darts = 0;
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         const CellTraits& t = traits(mesh.kind(e));
         expected_darts += static_cast<std::size_t>(t.num_face_corners());
         for (int f = 0; f < t.num_faces; ++f) {
@@ -255,7 +255,7 @@ std::vector<std::string> CellMap::differences_to(const Mesh& mesh) const {
             Dart walking = m.dart({e, f});
             for (int p = 0; p < mesh.face_size({e, f}); ++p) {
                 const ConstDart d = walking;
-                const NodeId n = mesh.face_corner({e, f}, p);
+                const VertexId n = mesh.face_corner({e, f}, p);
                 const DartInfo info = complex.info(d);
                 if (info != DartInfo{e.value, static_cast<std::int16_t>(f),
                                      static_cast<std::int16_t>(p)} ||
@@ -272,7 +272,7 @@ std::vector<std::string> CellMap::differences_to(const Mesh& mesh) const {
                            ": joined in the map or the mesh only");
                 else if (is_joined) {
                     const DartInfo far = complex.info(complex.beta<3>(d));
-                    if (far.element != other.element.value || far.face != other.face)
+                    if (far.element != other.cell.value || far.face != other.face)
                         report("element ", e.value, " face ", f, ": the neighbours differ");
                 }
                 walking = m.complex_beta1(walking);

@@ -30,18 +30,18 @@ class CellMap {
     CellMap& operator=(CellMap&&) noexcept;
 
     /// Adds the cell `e`, which is joined to no other cell. Nodes without a vertex get one.
-    void add_element(ElementId e, CellKind kind, std::span<const NodeId> corners,
+    void add_element(CellId e, CellKind kind, std::span<const VertexId> corners,
                      std::span<const Vec3> rest_positions);
     /// Removes the cell `e`. Vertices that lose their last dart are removed too.
     /// @pre  no face of `e` is joined to another face
-    void remove_element(ElementId e);
+    void remove_element(CellId e);
     /// Deletes the rows from these capacities on.
     /// @pre  none of these rows is in use
     void truncate(std::size_t node_capacity, std::size_t element_capacity);
     /// Makes `n` the node at a corner of `e`. A vertex that loses its last dart is removed.
-    void set_corner(ElementId e, int corner, NodeId n, const Vec3& rest_position);
+    void set_corner(CellId e, int corner, VertexId n, const Vec3& rest_position);
     /// Makes a dart at this corner of `e` the dart that CGAL stores for the vertex of `n`.
-    void set_incident_element(NodeId n, ElementId e, int corner);
+    void set_incident_element(VertexId n, CellId e, int corner);
     /// Joins two faces that are not joined yet. The corner at position 0 of `a` meets the corner at
     /// position `shift` of `b`.
     void glue(FaceId a, FaceId b, int shift);

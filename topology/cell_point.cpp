@@ -38,7 +38,7 @@ Vec3 CellPoint::position(const Mesh& mesh, std::span<const Vec3> positions) cons
     return x;
 }
 
-CellPoint point_near(const Mesh& mesh, ElementId cell, std::span<const Vec3> positions,
+CellPoint point_near(const Mesh& mesh, CellId cell, std::span<const Vec3> positions,
                      const Vec3& x) {
     const auto nodes = mesh.corners(cell);
     std::array<Vec3, max_corners> corners;
@@ -84,9 +84,9 @@ std::optional<CellPoint> find_point(const Mesh& mesh, std::span<const Vec3> posi
                                     const Vec3& x, double reach) {
     std::optional<CellPoint> found;
     double least = reach * reach;
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         Box box;
-        for (const NodeId n : mesh.corners(e)) box.extend(positions[n.index()]);
+        for (const VertexId n : mesh.corners(e)) box.extend(positions[n.index()]);
         if (box.squaredExteriorDistance(x) > least) continue;
         const CellPoint near = point_near(mesh, e, positions, x);
         const double square = (near.position(mesh, positions) - x).squaredNorm();

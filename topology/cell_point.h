@@ -14,7 +14,7 @@ namespace incise::topology {
 
 /// A point of a cell: x = sum of weight times x_corner. The weights are not negative and sum to 1.
 struct CellPoint {
-    ElementId cell;
+    CellId cell;
     std::array<double, max_corners> weights{};  ///< by corner; those beyond the last one are 0
 
     /// Returns its position, m.
@@ -28,8 +28,7 @@ struct CellPoint {
 /// weights are linear in each of them.
 /// @param positions  by node id, m
 /// @param x          m
-CellPoint point_near(const Mesh& mesh, ElementId cell, std::span<const Vec3> positions,
-                     const Vec3& x);
+CellPoint point_near(const Mesh& mesh, CellId cell, std::span<const Vec3> positions, const Vec3& x);
 
 /// Returns the point of a mesh that lies at `x`, or one near `x` that is not farther than `reach`.
 /// Cost: O(n).

@@ -6,21 +6,35 @@
 namespace incise::topology {
 
 bool ChangeSet::is_empty() const {
-    return epoch_before == epoch_after && nodes_added.empty() && nodes_removed.empty() &&
-           elements_added.empty() && elements_removed.empty() && rewired.empty() &&
-           inside_changes.empty() && faces_opened.empty() && faces_closed.empty();
+    return MeshChanges::is_empty() && inside_changes.empty() && faces_opened.empty() &&
+           faces_closed.empty();
 }
+
+namespace {
+
+template <class Node, class Element>
+void invert(MeshChanges<Node, Element>& changes) {
+    std::swap(changes.epoch_before, changes.epoch_after);
+    std::swap(changes.node_capacity_before, changes.node_capacity_after);
+    std::swap(changes.element_capacity_before, changes.element_capacity_after);
+    std::swap(changes.nodes_added, changes.nodes_removed);
+    std::swap(changes.elements_added, changes.elements_removed);
+    for (auto& rewiring : changes.rewired) std::swap(rewiring.from, rewiring.to);
+}
+
+}  // namespace
 
 ChangeSet inverse(const ChangeSet& changes) {
     ChangeSet back = changes;
-    std::swap(back.epoch_before, back.epoch_after);
-    std::swap(back.node_capacity_before, back.node_capacity_after);
-    std::swap(back.element_capacity_before, back.element_capacity_after);
-    std::swap(back.nodes_added, back.nodes_removed);
-    std::swap(back.elements_added, back.elements_removed);
+    invert(back);
     std::swap(back.faces_opened, back.faces_closed);
-    for (Rewiring& rewiring : back.rewired) std::swap(rewiring.from, rewiring.to);
     for (InsideChange& change : back.inside_changes) std::swap(change.from, change.to);
+    return back;
+}
+
+FragmentMeshChanges inverse(const FragmentMeshChanges& changes) {
+    FragmentMeshChanges back = changes;
+    invert(back);
     return back;
 }
 

@@ -13,61 +13,106 @@
 
 namespace incise::topology {
 
-/// A term of a convex combination of nodes.
-struct NodeSource {
-    NodeId node;
-    double weight = 0.0;
-    bool operator==(const NodeSource&) const = default;
-    static void archive(auto& ar, auto& self) { ar(self.node, self.weight); }
-};
-
-/// A node that an edit added or removed. The sources tell where its values come from:
+/// A node that an edit added or removed: of the material a vertex, of the physics a node. The
+/// sources tell where its values come from:
 /// - added, one source: the copy of a node that was divided
 /// - added, several sources: a point between other nodes
 /// - added, no source: a node that an undo brings back, with the values that it had when removed
 /// - removed, one source: a node that was merged into its source
 /// - removed, no source: a node whose last element was removed
-struct NodeRecord {
-    NodeId id;
+template <class Node>
+struct NodeRecordOf {
+    /// A term of a convex combination of nodes.
+    struct Source {
+        Node node;
+        double weight = 0.0;
+        bool operator==(const Source&) const = default;
+        static void archive(auto& ar, auto& self) { ar(self.node, self.weight); }
+    };
+    Node id;
     Vec3 rest_position = Vec3::Zero();
-    std::array<NodeSource, 4> sources{};
+    std::array<Source, 4> sources{};
     int num_sources = 0;
-    bool operator==(const NodeRecord&) const = default;
+    bool operator==(const NodeRecordOf&) const = default;
     static void archive(auto& ar, auto& self) {
         ar(self.id, self.rest_position, self.sources, self.num_sources);
     }
 };
 
-/// An element that an edit added or removed. The corners are those after the edit for an added
-/// element, and those before the edit for a removed one.
-struct ElementRecord {
-    ElementId id;
+/// An element that an edit added or removed: of the material a cell, of the physics an element. The
+/// corners are those after the edit for an added element, and those before it for a removed one.
+template <class Node, class Element>
+struct ElementRecordOf {
+    Element id;
     CellKind kind{};
     int region = 0;
-    ElementId parent;  ///< the element that it was divided from; invalid if there is none
-    std::vector<NodeId> corners;
-    bool operator==(const ElementRecord&) const = default;
+    Element parent;  ///< the element that it was divided from; invalid if there is none
+    std::vector<Node> corners;
+    bool operator==(const ElementRecordOf&) const = default;
     static void archive(auto& ar, auto& self) {
         ar(self.id, self.kind, self.region, self.parent, self.corners);
     }
 };
 
 /// A corner of a living element at which an edit replaced the node.
-struct Rewiring {
-    ElementId element;
+template <class Node, class Element>
+struct RewiringOf {
+    Element element;
     int corner = 0;
-    NodeId from, to;
-    bool operator==(const Rewiring&) const = default;
+    Node from, to;
+    bool operator==(const RewiringOf&) const = default;
     static void archive(auto& ar, auto& self) { ar(self.element, self.corner, self.from, self.to); }
 };
 
-/// A change of Mesh::was_inside() at the faces of an element: bit f for face f. From 0 for an
-/// element that the edit added.
+/// What one edit did to the nodes and elements of a mesh. All lists are in ascending order of their
+/// ids.
+template <class NodeOf, class ElementOf>
+struct MeshChanges {
+    using Node = NodeOf;
+    using Element = ElementOf;
+    using NodeRecord = NodeRecordOf<Node>;
+    using ElementRecord = ElementRecordOf<Node, Element>;
+    using Rewiring = RewiringOf<Node, Element>;
+
+    std::uint64_t epoch_before = 0, epoch_after = 0;
+    std::size_t node_capacity_before = 0, node_capacity_after = 0;
+    std::size_t element_capacity_before = 0, element_capacity_after = 0;
+
+    std::vector<NodeRecord> nodes_added, nodes_removed;
+    std::vector<ElementRecord> elements_added, elements_removed;
+    std::vector<Rewiring> rewired;
+
+    /// True if nothing was edited. The record of an edit can have empty lists, but it leads to
+    /// another epoch.
+    bool is_empty() const {
+        return epoch_before == epoch_after && nodes_added.empty() && nodes_removed.empty() &&
+               elements_added.empty() && elements_removed.empty() && rewired.empty();
+    }
+    bool operator==(const MeshChanges&) const = default;
+    static void archive(auto& ar, auto& self) {
+        ar(self.epoch_before, self.epoch_after, self.node_capacity_before, self.node_capacity_after,
+           self.element_capacity_before, self.element_capacity_after, self.nodes_added,
+           self.nodes_removed, self.elements_added, self.elements_removed, self.rewired);
+    }
+};
+
+// Records of the material.
+using VertexRecord = NodeRecordOf<VertexId>;
+using CellRecord = ElementRecordOf<VertexId, CellId>;
+using CellRewiring = RewiringOf<VertexId, CellId>;
+// Records of the physics.
+using NodeRecord = NodeRecordOf<NodeId>;
+using ElementRecord = ElementRecordOf<NodeId, ElementId>;
+using Rewiring = RewiringOf<NodeId, ElementId>;
+using FragmentMeshChanges = MeshChanges<NodeId, ElementId>;
+
+/// A change of Mesh::was_inside() at the faces of a cell: bit f for face f. From 0 for a cell
+/// that the edit added.
 struct InsideChange {
-    ElementId element;
+    CellId cell;
     std::uint8_t from = 0, to = 0;
     bool operator==(const InsideChange&) const = default;
-    static void archive(auto& ar, auto& self) { ar(self.element, self.from, self.to); }
+    static void archive(auto& ar, auto& self) { ar(self.cell, self.from, self.to); }
 };
 
 /// The two sides of a face, the one with the lower id first.
@@ -77,32 +122,23 @@ struct FacePair {
     static void archive(auto& ar, auto& self) { ar(self.a, self.b); }
 };
 
-/// The record of one edit. All lists are in ascending order of their ids. The opened faces include
-/// the shared faces of removed elements.
-struct ChangeSet {
-    std::uint64_t epoch_before = 0, epoch_after = 0;
-    std::size_t node_capacity_before = 0, node_capacity_after = 0;
-    std::size_t element_capacity_before = 0, element_capacity_after = 0;
-
-    std::vector<NodeRecord> nodes_added, nodes_removed;
-    std::vector<ElementRecord> elements_added, elements_removed;
-    std::vector<Rewiring> rewired;
+/// The record of one edit of the material. The opened faces include the shared faces of removed
+/// cells.
+struct ChangeSet : MeshChanges<VertexId, CellId> {
     std::vector<InsideChange> inside_changes;
     std::vector<FacePair> faces_opened, faces_closed;
 
-    /// True if nothing was edited. The record of an edit can have empty lists, but it leads to
-    /// another epoch.
+    /// See MeshChanges::is_empty().
     bool is_empty() const;
     bool operator==(const ChangeSet&) const = default;
     static void archive(auto& ar, auto& self) {
-        ar(self.epoch_before, self.epoch_after, self.node_capacity_before, self.node_capacity_after,
-           self.element_capacity_before, self.element_capacity_after, self.nodes_added,
-           self.nodes_removed, self.elements_added, self.elements_removed, self.rewired,
-           self.inside_changes, self.faces_opened, self.faces_closed);
+        MeshChanges::archive(ar, self);
+        ar(self.inside_changes, self.faces_opened, self.faces_closed);
     }
 };
 
 /// Returns the edit that undoes `changes`.
 ChangeSet inverse(const ChangeSet& changes);
+FragmentMeshChanges inverse(const FragmentMeshChanges& changes);
 
 }  // namespace incise::topology

@@ -33,8 +33,8 @@ class ComponentCount {
     /// faces which the edit did not change. The search ends when the components can be counted.
     /// `found` receives the other elements that the search has visited.
     DisjointSet search(const Mesh& mesh, const ChangeSet& changes,
-                       const std::vector<ElementId>& touched, std::vector<ElementId>& found);
-    std::int32_t& group_of(ElementId e) { return group_of_[e.index()]; }
+                       const std::vector<CellId>& touched, std::vector<CellId>& found);
+    std::int32_t& group_of(CellId e) { return group_of_[e.index()]; }
 
     int value_;
     std::vector<std::int32_t> group_of_;  // by element; scratch memory, all -1 between edits

@@ -38,26 +38,30 @@ class FollowedEpoch {
     /// InputError, and changes nothing, if the edit does not begin at the present epoch.
     /// @param changes  the edit
     /// @param who      the name of the follower in the message
-    void advance(const ChangeSet& changes, const char* who) {
-        if (changes.epoch_before != epoch_) refuse(changes, who, "");
+    template <class Node, class Element>
+    void advance(const MeshChanges<Node, Element>& changes, const char* who) {
+        if (changes.epoch_before != epoch_)
+            refuse(changes.epoch_before, changes.epoch_after, who, "");
         epoch_ = changes.epoch_after;
     }
     /// Advances to the end of an edit, for a follower that also reads the mesh. Throws InputError,
     /// and changes nothing, if the edit does not begin at the present epoch, or if `mesh` is not at
     /// the epoch at which the edit ends.
-    void advance(const EditedMesh auto& mesh, const ChangeSet& changes, const char* who) {
+    template <class Node, class Element>
+    void advance(const EditedMesh auto& mesh, const MeshChanges<Node, Element>& changes,
+                 const char* who) {
         if (changes.epoch_before != epoch_ || changes.epoch_after != mesh.epoch())
-            refuse(changes, who, " and the mesh at " + std::to_string(mesh.epoch()));
+            refuse(changes.epoch_before, changes.epoch_after, who,
+                   " and the mesh at " + std::to_string(mesh.epoch()));
         epoch_ = changes.epoch_after;
     }
 
   private:
-    [[noreturn]] void refuse(const ChangeSet& changes, const char* who,
+    [[noreturn]] void refuse(std::uint64_t before, std::uint64_t after, const char* who,
                              const std::string& mesh) const {
         throw InputError(std::string(who) + ": an edit out of turn: it leads from epoch " +
-                         std::to_string(changes.epoch_before) + " to " +
-                         std::to_string(changes.epoch_after) + ", the " + who + " is at " +
-                         std::to_string(epoch_) + mesh);
+                         std::to_string(before) + " to " + std::to_string(after) + ", the " + who +
+                         " is at " + std::to_string(epoch_) + mesh);
     }
 
     std::uint64_t epoch_;

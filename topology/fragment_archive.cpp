@@ -50,13 +50,13 @@ class FragmentArchive {
                     f.carrier_of_cell_.size() == material_.element_capacity() &&
                     f.fragment_of_cell_.size() == material_.element_capacity(),
                 "lists of different lengths");
-        const auto is_carrier = [&](ElementId e) {
+        const auto is_carrier = [&](CarrierId e) {
             return e.is_valid() && e.index() < num_carriers;
         };
         const auto is_fragment = [&](ElementId e) {
             return !e.is_valid() || e.index() < num_fragments;
         };
-        const auto is_cell = [&](ElementId e) {
+        const auto is_cell = [&](CellId e) {
             return e.is_valid() && e.index() < material_.element_capacity();
         };
         const auto is_node = [&](NodeId n) { return n.is_valid() && n.index() < num_nodes; };
@@ -82,7 +82,7 @@ class FragmentArchive {
             f.origin_begin_.push_back(f.origin_begin_.back() +
                                       static_cast<std::size_t>(traits(kind).num_corners));
         require(f.origins_of_carrier_.size() == f.origin_begin_.back(), "lists of origins");
-        for (const ElementId carrier : f.carriers_)
+        for (const CarrierId carrier : f.carriers_)
             f.corner_begin_.push_back(f.corner_begin_.back() + f.origins_of(carrier).size());
         require(f.corners_.size() == f.corner_begin_.back(), "lists of corners");
         f.complete();
@@ -90,9 +90,10 @@ class FragmentArchive {
 
     void restore_lists_of_cells() {
         FragmentMesh& f = fragments_;
-        std::vector<std::vector<ElementId>> of_carrier(f.kinds_.size()),
-            of_fragment(f.carriers_.size()), fragments_of(f.kinds_.size());
-        for (const ElementId cell : material_.elements()) {
+        std::vector<std::vector<CellId>> of_carrier(f.kinds_.size()),
+            of_fragment(f.carriers_.size());
+        std::vector<std::vector<ElementId>> fragments_of(f.kinds_.size());
+        for (const CellId cell : material_.elements()) {
             require(f.fragment_of_cell(cell).is_valid(), "a cell without a fragment");
             of_carrier[f.carrier_of_cell(cell).index()].push_back(cell);
             of_fragment[f.fragment_of_cell(cell).index()].push_back(cell);
@@ -100,10 +101,11 @@ class FragmentArchive {
         for (const ElementId e : f.elements()) fragments_of[f.carrier(e).index()].push_back(e);
         const auto keep = [&](auto& lists, const auto& all) {
             for (std::size_t i = 0; i < all.size(); ++i) {
-                const ElementId e(i);
-                const bool is_default =
-                    all[i] == std::vector{e} || (i < f.kinds_.size() && f.was_never_alive(e));
-                if (!is_default) lists[e] = all[i];
+                using Key = typename std::remove_cvref_t<decltype(lists)>::key_type;
+                using Id = typename std::remove_cvref_t<decltype(all[i])>::value_type;
+                const bool is_default = all[i] == std::vector{Id(i)} ||
+                                        (i < f.kinds_.size() && f.was_never_alive(CarrierId(i)));
+                if (!is_default) lists[Key(i)] = all[i];
             }
         };
         keep(f.cells_of_carrier_, of_carrier);

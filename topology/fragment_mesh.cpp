@@ -33,45 +33,51 @@ std::vector<NodeId> lowest_at_same_position(std::span<const Vec3> rest_positions
 
 }  // namespace
 
-FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<const NodeId> held)
+FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<const VertexId> held)
     : FragmentMesh(light_share, FollowedEpoch(material)) {
     is_held_.assign(material.node_capacity(), 0);
     hold(held);
     const Carriers& source = material.source_carriers();
     const std::vector<NodeId> corners_of_source = add_nodes(material);
-    std::vector<ElementId> carrier_of_row(source.corners.size());
+    std::vector<CarrierId> carrier_of_row(source.corners.size());
     for (std::size_t i = 0; i < material.element_capacity(); ++i) {
-        const ElementId e(i);
-        ElementId carrier = e;
-        auto corners = material.corners(e);
+        const CellId cell(i);
+        CarrierId carrier(i);
+        std::vector<NodeId> corners;
+        for (const VertexId v : material.corners(cell))
+            corners.push_back(with_number_of<NodeId>(v));
         if (i < source.of_cell.size() && source.of_cell[i] != Carriers::whole) {
             const auto row = static_cast<std::size_t>(source.of_cell[i]);
-            if (!carrier_of_row[row].is_valid()) carrier_of_row[row] = e;
+            if (!carrier_of_row[row].is_valid()) carrier_of_row[row] = carrier;
             carrier = carrier_of_row[row];
-            if (carrier == e) corners = std::span(corners_of_source).subspan(4 * row, 4);
-            if (material.is_alive(e)) cells_of_carrier_[carrier].push_back(e);
+            if (carrier == CarrierId(i)) {
+                const auto of_source = std::span(corners_of_source).subspan(4 * row, 4);
+                corners.assign(of_source.begin(), of_source.end());
+            }
+            if (material.is_alive(cell)) cells_of_carrier_[carrier].push_back(cell);
         }
-        kinds_.push_back(material.kind(e));
-        regions_.push_back(material.region(e));
+        kinds_.push_back(material.kind(cell));
+        regions_.push_back(material.region(cell));
         for (const NodeId n : corners) origins_of_carrier_.push_back(origins_[n.index()]);
         corners_.insert(corners_.end(), corners.begin(), corners.end());
         origin_begin_.push_back(origins_of_carrier_.size());
-        carriers_.push_back(e);
-        is_alive_.push_back(material.is_alive(e) && carrier == e ? 1 : 0);
+        carriers_.emplace_back(i);
+        is_alive_.push_back(material.is_alive(cell) && carrier == CarrierId(i) ? 1 : 0);
         shares_.push_back(1.0);
         carrier_of_cell_.push_back(carrier);
-        fragment_of_cell_.push_back(carrier);
+        fragment_of_cell_.push_back(with_number_of<ElementId>(carrier));
     }
     corner_begin_ = origin_begin_;
     is_node_alive_.assign(rest_positions_.size(), 0);
     for (std::size_t i = 0; i < is_alive_.size(); ++i)
         if (is_alive_[i] != 0)
             for (const NodeId n : corners(ElementId(i))) is_node_alive_[n.index()] = 1;
-    std::vector<ElementId> divided;
-    for (const ElementId carrier : carrier_of_row)
+    std::vector<CarrierId> divided;
+    for (const CarrierId carrier : carrier_of_row)
         if (carrier.is_valid()) divided.push_back(carrier);
-    for (const ElementId carrier : divided) drop_if_trivial(cells_of_carrier_, carrier);
-    cells_of_fragment_ = cells_of_carrier_;
+    for (const CarrierId carrier : divided) drop_if_trivial(cells_of_carrier_, carrier);
+    for (const auto& [carrier, cells] : cells_of_carrier_)
+        cells_of_fragment_.emplace(with_number_of<ElementId>(carrier), cells);
     complete();
     if (!divided.empty()) FragmentUpdate::divide(*this, material, std::move(divided));
 }
@@ -107,9 +113,9 @@ void FragmentMesh::complete() {
     std::vector<Vec3> x;
     for (std::size_t i = 0; i < kinds_.size(); ++i) {
         x.clear();
-        for (const NodeId n : origins_of(ElementId(i))) {
+        for (const NodeId n : origins_of(CarrierId(i))) {
             x.push_back(rest_position(n));
-            if (!was_never_alive(ElementId(i))) ++end[n.index() + 1];
+            if (!was_never_alive(CarrierId(i))) ++end[n.index() + 1];
         }
         volumes_.push_back(signed_volume(kinds_[i], x));
     }
@@ -117,9 +123,9 @@ void FragmentMesh::complete() {
     carrier_begin_ = end;
     carriers_at_.resize(end.back());
     for (std::size_t i = 0; i < kinds_.size(); ++i)
-        if (!was_never_alive(ElementId(i)))
-            for (const NodeId n : origins_of(ElementId(i)))
-                carriers_at_[end[n.index()]++] = ElementId(i);
+        if (!was_never_alive(CarrierId(i)))
+            for (const NodeId n : origins_of(CarrierId(i)))
+                carriers_at_[end[n.index()]++] = CarrierId(i);
 }
 
 FragmentChanges FragmentMesh::apply(const Mesh& material, const ChangeSet& changes) {
@@ -129,64 +135,64 @@ FragmentChanges FragmentMesh::apply(const Mesh& material, const ChangeSet& chang
     return FragmentUpdate(*this, material, changes).run();
 }
 
-void FragmentMesh::hold(std::span<const NodeId> nodes) {
+void FragmentMesh::hold(std::span<const VertexId> vertices) {
     std::ranges::fill(is_held_, 0);
-    for (const NodeId n : nodes) is_held_[n.index()] = 1;
+    for (const VertexId v : vertices) is_held_[v.index()] = 1;
 }
 
 void FragmentMesh::hold_new_nodes(const ChangeSet& changes) {
     is_held_.resize(changes.node_capacity_after, 0);
-    for (const NodeRecord& record : changes.nodes_added) {
+    for (const VertexRecord& record : changes.nodes_added) {
         if (record.id.index() < changes.node_capacity_before) continue;  // an undo brings it back
         const auto sources =
             std::span(record.sources).first(static_cast<std::size_t>(record.num_sources));
         is_held_[record.id.index()] = std::ranges::all_of(
-            sources, [&](const NodeSource& source) { return is_held(source.node); });
+            sources, [&](const VertexRecord::Source& source) { return is_held(source.node); });
     }
 }
 
 void FragmentMesh::undo(const Mesh& material, const FragmentChanges& changes) {
-    const ChangeSet& edit = changes.mesh;
+    const auto& edit = changes.mesh;
     if (edit.epoch_before == edit.epoch_after) return;
-    ChangeSet back;
+    FragmentMeshChanges back;
     back.epoch_before = edit.epoch_after;
     back.epoch_after = edit.epoch_before;
     epoch_.advance(material, back, "fragment mesh");
 
     for (const CarriedCell& cell : changes.cells) {
         if (cell.from.is_valid() && cell.to.is_valid()) continue;
-        auto& cells = cells_of_carrier_.try_emplace(cell.carrier, 1, cell.carrier).first->second;
+        std::vector<CellId>& cells = entry_of(cells_of_carrier_, cell.carrier);
         if (cell.from.is_valid())
             cells.insert(std::ranges::upper_bound(cells, cell.cell), cell.cell);
         else
             std::erase(cells, cell.cell);
         drop_if_trivial(cells_of_carrier_, cell.carrier);
     }
-    std::vector<ElementId> carriers;
+    std::vector<CarrierId> carriers;
     for (const auto* records : {&edit.elements_added, &edit.elements_removed})
-        for (const ElementRecord& record : *records) carriers.push_back(carrier(record.id));
-    for (const Rewiring& rewiring : edit.rewired)
+        for (const auto& record : *records) carriers.push_back(carrier(record.id));
+    for (const auto& rewiring : edit.rewired)
         corners_[corner_begin_[rewiring.element.index()] +
                  static_cast<std::size_t>(rewiring.corner)] = rewiring.from;
-    for (const ElementRecord& record : edit.elements_removed) is_alive_[record.id.index()] = 1;
-    for (const ElementRecord& record : edit.elements_added) is_alive_[record.id.index()] = 0;
+    for (const auto& record : edit.elements_removed) is_alive_[record.id.index()] = 1;
+    for (const auto& record : edit.elements_added) is_alive_[record.id.index()] = 0;
     for (const ShareChange& share : changes.shares) shares_[share.fragment.index()] = share.from;
-    for (const NodeRecord& record : edit.nodes_removed) is_node_alive_[record.id.index()] = 1;
+    for (const auto& record : edit.nodes_removed) is_node_alive_[record.id.index()] = 1;
     for (const CarriedCell& cell : changes.cells) {
         move_cell(cell.cell, cell.to, cell.from);
         set_carried_around(cell.cell, cell.was_around);
     }
-    for (const ElementId e : carriers) {
+    for (const CarrierId of : carriers) {
         std::vector<ElementId> living;
-        for (const ElementId known : fragments_of(e))
+        for (const ElementId known : fragments_of(of))
             if (is_alive(known)) living.push_back(known);
-        for (const ElementRecord& record : edit.elements_removed)
-            if (carrier(record.id) == e && std::ranges::find(living, record.id) == living.end())
+        for (const auto& record : edit.elements_removed)
+            if (carrier(record.id) == of && std::ranges::find(living, record.id) == living.end())
                 living.push_back(record.id);
         std::ranges::sort(living);
-        set_fragments(e, std::move(living));
+        set_fragments(of, std::move(living));
     }
-    for (const ElementRecord& record : edit.elements_added) cells_of_fragment_.erase(record.id);
+    for (const auto& record : edit.elements_added) cells_of_fragment_.erase(record.id);
     num_elements_ += edit.elements_removed.size();
     num_elements_ -= edit.elements_added.size();
     num_nodes_ += edit.nodes_removed.size();
@@ -210,19 +216,10 @@ void FragmentMesh::truncate(std::size_t num_nodes, std::size_t num_elements,
     part_of_cell_.resize(num_cells, -1);
 }
 
-void FragmentMesh::drop_if_trivial(std::unordered_map<ElementId, std::vector<ElementId>>& lists,
-                                   ElementId key) {
-    const auto it = lists.find(key);
-    if (it != lists.end() && it->second.size() == 1 && it->second.front() == key) lists.erase(it);
-}
-
-void FragmentMesh::move_cell(ElementId cell, ElementId from, ElementId to) {
-    const auto list_of = [&](ElementId e) -> std::vector<ElementId>& {
-        return cells_of_fragment_.try_emplace(e, 1, e).first->second;
-    };
-    if (from.is_valid()) std::erase(list_of(from), cell);
+void FragmentMesh::move_cell(CellId cell, ElementId from, ElementId to) {
+    if (from.is_valid()) std::erase(entry_of(cells_of_fragment_, from), cell);
     if (to.is_valid()) {
-        auto& cells = list_of(to);
+        std::vector<CellId>& cells = entry_of(cells_of_fragment_, to);
         cells.insert(std::ranges::upper_bound(cells, cell), cell);
     }
     fragment_of_cell_[cell.index()] = to;
@@ -230,9 +227,16 @@ void FragmentMesh::move_cell(ElementId cell, ElementId from, ElementId to) {
     if (to.is_valid()) drop_if_trivial(cells_of_fragment_, to);
 }
 
-void FragmentMesh::set_fragments(ElementId carrier, std::vector<ElementId> fragments) {
+void FragmentMesh::set_fragments(CarrierId carrier, std::vector<ElementId> fragments) {
     fragments_of_carrier_[carrier] = std::move(fragments);
     drop_if_trivial(fragments_of_carrier_, carrier);
+}
+
+VertexId FragmentMesh::vertex_of_origin(const Mesh& material, NodeId n) const {
+    const auto v = with_number_of<VertexId>(origin(n));
+    const bool is_there = v.index() < material.node_capacity() &&
+                          material.rest_position(v) == rest_position(origin(n));
+    return is_there ? v : VertexId();
 }
 
 int FragmentMesh::corner_of(ElementId e, NodeId n) const {
@@ -241,44 +245,26 @@ int FragmentMesh::corner_of(ElementId e, NodeId n) const {
     return it == nodes.end() ? -1 : static_cast<int>(it - nodes.begin());
 }
 
-std::span<const ElementId> FragmentMesh::fragments_of(const ElementId& carrier) const {
-    const auto it = fragments_of_carrier_.find(carrier);
-    if (it != fragments_of_carrier_.end()) return it->second;
-    return {&carrier, is_alive(carrier) ? 1u : 0u};
-}
-
-std::span<const ElementId> FragmentMesh::cells_of_carrier(const ElementId& carrier) const {
-    const auto it = cells_of_carrier_.find(carrier);
-    return it != cells_of_carrier_.end() ? std::span<const ElementId>(it->second)
-                                         : std::span<const ElementId>(&carrier, 1);
-}
-
-std::span<const ElementId> FragmentMesh::cells_of(const ElementId& e) const {
-    const auto it = cells_of_fragment_.find(e);
-    return it != cells_of_fragment_.end() ? std::span<const ElementId>(it->second)
-                                          : std::span<const ElementId>(&e, 1);
-}
-
-std::span<const NodeId> FragmentMesh::origins_of(ElementId carrier) const {
+std::span<const NodeId> FragmentMesh::origins_of(CarrierId carrier) const {
     return {origins_of_carrier_.data() + origin_begin_[carrier.index()],
             origin_begin_[carrier.index() + 1] - origin_begin_[carrier.index()]};
 }
 
-std::span<const ElementId> FragmentMesh::carriers_at(NodeId origin) const {
+std::span<const CarrierId> FragmentMesh::carriers_at(NodeId origin) const {
     return {carriers_at_.data() + carrier_begin_[origin.index()],
             carrier_begin_[origin.index() + 1] - carrier_begin_[origin.index()]};
 }
 
 void FragmentMesh::star(NodeId n, std::vector<ElementId>& elements) const {
     elements.clear();
-    for (const ElementId carrier : carriers_at(origins_[n.index()]))
+    for (const CarrierId carrier : carriers_at(origins_[n.index()]))
         for (const ElementId e : fragments_of(carrier))
             if (corner_of(e, n) >= 0) elements.push_back(e);
     std::sort(elements.begin(), elements.end());
 }
 
 bool FragmentMesh::has_element_at(NodeId n) const {
-    return std::ranges::any_of(carriers_at(origins_[n.index()]), [&](ElementId carrier) {
+    return std::ranges::any_of(carriers_at(origins_[n.index()]), [&](CarrierId carrier) {
         return std::ranges::any_of(fragments_of(carrier),
                                    [&](ElementId e) { return corner_of(e, n) >= 0; });
     });
@@ -290,11 +276,11 @@ ElementId FragmentMesh::incident_element(NodeId n) const {
     return elements.empty() ? ElementId() : elements.front();
 }
 
-Embedding FragmentMesh::embedding(const Mesh& material, NodeId n) const {
-    std::vector<ElementId> cells;
+Embedding FragmentMesh::embedding(const Mesh& material, VertexId n) const {
+    std::vector<CellId> cells;
     material.star(n, cells);
     ElementId at_home, lowest;
-    for (const ElementId cell : cells) {
+    for (const CellId cell : cells) {
         const ElementId e = fragment_of_cell(cell);
         if (!lowest.is_valid() || e < lowest) lowest = e;
         if (is_at_home(cell) && (!at_home.is_valid() || e < at_home)) at_home = e;
@@ -317,7 +303,7 @@ Embedding FragmentMesh::embedding_in(ElementId e, const Vec3& x) const {
     return result;
 }
 
-std::array<double, max_corners> FragmentMesh::weights_in_carrier(ElementId carrier,
+std::array<double, max_corners> FragmentMesh::weights_in_carrier(CarrierId carrier,
                                                                  const Vec3& x) const {
     std::array<double, max_corners> weights{};
     const auto nodes = origins_of(carrier);

@@ -15,6 +15,7 @@
 #include "incise/base/types.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/follower.h"
+#include "incise/topology/list_or_one.h"
 #include "incise/topology/living_ids.h"
 #include "incise/topology/mesh.h"
 
@@ -33,7 +34,8 @@ struct ShareChange {
 /// A cell that an edit gave to another fragment, or that hangs on the same one in another way; see
 /// FragmentMesh::is_carried_around(). Invalid: the cell did not exist, or was removed.
 struct CarriedCell {
-    ElementId cell, carrier;
+    CellId cell;
+    CarrierId carrier;
     ElementId from, to;
     /// True if the edit took the cell out of a fragment that carried it with a light part, or gave
     /// it to such a one. A new cell comes out of the fragment that carried its parent.
@@ -48,7 +50,7 @@ struct CarriedCell {
 struct FragmentChanges {
     /// Fragments and their nodes. The parent of an added fragment is the one that carried its first
     /// cell before. No faces: fragments have none.
-    ChangeSet mesh;
+    FragmentMeshChanges mesh;
     std::vector<ShareChange> shares;  ///< in ascending order of fragments
     std::vector<CarriedCell> cells;   ///< in ascending order of cells
     /// True if a light fragment joined another one or parted from it. Then other nodes carry a part
@@ -60,7 +62,7 @@ struct FragmentChanges {
     bool operator==(const FragmentChanges&) const = default;
 };
 
-/// The position of a node of the material in a fragment: a combination of the corners of the
+/// The position of a vertex of the material in a fragment: a combination of the corners of the
 /// fragment, with weights that sum to 1. In a fragment that carries material of another carrier,
 /// weights can be negative.
 struct Embedding {
@@ -83,8 +85,8 @@ struct Embedding {
 /// A *light* fragment is no element of its own: another fragment carries its cells. It has little
 /// volume, and nothing holds it: see default_light_share and hold().
 ///
-/// A body without cuts has one fragment for each element, with the same ids, and the same nodes.
-/// Ids of fragments and nodes are numbers of their own: those of the material after cuts differ.
+/// A body without cuts has one carrier and one fragment for each cell and one node for each vertex,
+/// with the same numbers. Fragments and nodes that edits add have numbers of their own.
 class FragmentMesh {
   public:
     /// Takes every living element of `material` as a carrier, unless it is a part of one of
@@ -94,12 +96,12 @@ class FragmentMesh {
     /// @param light_share  see default_light_share; with 0 no fragment is light
     /// @param held         see hold()
     explicit FragmentMesh(const Mesh& material, double light_share = default_light_share,
-                          std::span<const NodeId> held = {});
+                          std::span<const VertexId> held = {});
 
     /// Sets the nodes of the material whose positions are prescribed. No fragment with material at
     /// one of them is light, so that it stays where it is held. A node that an edit makes of held
     /// ones only is held as well. Fragments that exist stay as they are until an edit beside them.
-    void hold(std::span<const NodeId> nodes);
+    void hold(std::span<const VertexId> vertices);
     /// Follows an edit of the material, and returns what it did to the fragments.
     /// Throws InputError, and changes nothing, for an edit out of turn.
     /// Cost: proportional to the elements at the nodes of the carriers that the edit touches.
@@ -133,7 +135,7 @@ class FragmentMesh {
     /// Returns which corner of `e` the node is; -1 if it is none.
     int corner_of(ElementId e, NodeId n) const;
     /// True if the position of a node of the material is prescribed; see hold().
-    bool is_held(NodeId n) const { return is_held_[n.index()] != 0; }
+    bool is_held(VertexId n) const { return is_held_[n.index()] != 0; }
     /// Returns the volume that the fragment carries over that of its carrier. It is exactly 1 for a
     /// carrier that is whole, or cut in part. It exceeds 1 if cells of others outweigh those that
     /// are missing.
@@ -145,9 +147,11 @@ class FragmentMesh {
     const Vec3& rest_position(NodeId n) const { return rest_positions_[n.index()]; }
     std::span<const Vec3> rest_positions() const { return rest_positions_; }
     /// Returns the node before any cut that the node is, or of which it is a copy. Of several ones
-    /// with the same rest position, it is the lowest. It is an id of the material, too, unless the
-    /// body was built with carriers and has no material at this position.
+    /// with the same rest position, it is the lowest.
     NodeId origin(NodeId n) const { return origins_[n.index()]; }
+    /// Returns the vertex that the origin of a node was before any cut. Invalid if the body was
+    /// built with carriers and has no material there.
+    VertexId vertex_of_origin(const Mesh& material, NodeId n) const;
     /// Writes the fragments with the node as a corner to `elements`, in ascending order.
     void star(NodeId n, std::vector<ElementId>& elements) const;
     /// Returns the lowest fragment with the node as a corner; invalid for a dead node.
@@ -155,36 +159,37 @@ class FragmentMesh {
 
     /// Returns the carrier of a fragment: the element that the body had before any cut. A carrier
     /// of the source has the id of its lowest cell.
-    ElementId carrier(ElementId e) const { return carriers_[e.index()]; }
+    CarrierId carrier(ElementId e) const { return carriers_[e.index()]; }
     /// Returns the carrier of a cell of the material.
-    ElementId carrier_of_cell(ElementId cell) const { return carrier_of_cell_[cell.index()]; }
+    CarrierId carrier_of_cell(CellId cell) const { return carrier_of_cell_[cell.index()]; }
     /// Returns the fragment that carries a living cell of the material.
-    ElementId fragment_of_cell(ElementId cell) const { return fragment_of_cell_[cell.index()]; }
+    ElementId fragment_of_cell(CellId cell) const { return fragment_of_cell_[cell.index()]; }
     /// Returns the cells that a living fragment carries, in ascending order.
-    /// @param e  must outlive the span
-    std::span<const ElementId> cells_of(const ElementId& e) const;
-    std::span<const ElementId> cells_of(ElementId&&) const = delete;
+    /// @lifetime Until the next edit.
+    ListOrOne<CellId> cells_of(ElementId e) const {
+        return ids_of(cells_of_fragment_, e, with_number_of<CellId>(e));
+    }
     /// True if a cell belongs to the carrier of the fragment that carries it.
-    bool is_at_home(ElementId cell) const {
+    bool is_at_home(CellId cell) const {
         return carriers_[fragment_of_cell(cell).index()] == carrier_of_cell(cell);
     }
     /// True if a fragment of its own carrier carries the cell as one of a light part: by way of
     /// other carriers, around a cut. Such a part gives the fragment no connections at nodes.
-    bool is_carried_around(ElementId cell) const { return carried_around_.contains(cell); }
+    bool is_carried_around(CellId cell) const { return carried_around_.contains(cell); }
     /// True if the cell belongs to the part of its carrier that its fragment is the element of.
-    bool is_own(ElementId cell) const { return is_at_home(cell) && !is_carried_around(cell); }
+    bool is_own(CellId cell) const { return is_at_home(cell) && !is_carried_around(cell); }
     /// Returns the combination of nodes that a living node of the material follows. Of the
     /// fragments at the node it is in the lowest one that has cells of its own carrier there, or
     /// else in the lowest one.
-    Embedding embedding(const Mesh& material, NodeId n) const;
+    Embedding embedding(const Mesh& material, VertexId n) const;
     /// Returns the combination of the corners of a fragment that is at `x` at rest, m.
     /// @pre  the fragment is a tetrahedron, or `x` is the place of one of its corners
     Embedding embedding_in(ElementId e, const Vec3& x) const;
     /// Returns the weights of the corners of a carrier, in their order, for a point at `x` at rest,
     /// m. See embedding_in().
-    std::array<double, max_corners> weights_in_carrier(ElementId carrier, const Vec3& x) const;
+    std::array<double, max_corners> weights_in_carrier(CarrierId carrier, const Vec3& x) const;
     /// Returns the origins of the corners of a carrier, in their order; see origin().
-    std::span<const NodeId> origins_of(ElementId carrier) const;
+    std::span<const NodeId> origins_of(CarrierId carrier) const;
 
     bool operator==(const FragmentMesh&) const = default;
 
@@ -200,33 +205,56 @@ class FragmentMesh {
     void complete();
     /// True if the element was dead before any cut, or was only a part of another carrier: then it
     /// is no carrier, though it has the id of one.
-    bool was_never_alive(ElementId carrier) const {
+    bool was_never_alive(CarrierId carrier) const {
+        const auto first = with_number_of<ElementId>(carrier);
         return carrier_of_cell_[carrier.index()] != carrier ||
-               (!is_alive(carrier) && fragment_of_cell_[carrier.index()] == carrier);
+               (!is_alive(first) && fragment_of_cell_[carrier.index()] == first);
     }
 
     /// Follows the nodes that an edit of the material adds: see is_held().
     void hold_new_nodes(const ChangeSet& changes);
     void truncate(std::size_t num_nodes, std::size_t num_elements, std::size_t num_cells);
     /// Moves a cell from the list of one fragment to that of another; either may be invalid.
-    void move_cell(ElementId cell, ElementId from, ElementId to);
-    void set_carried_around(ElementId cell, bool is_around) {
+    void move_cell(CellId cell, ElementId from, ElementId to);
+    void set_carried_around(CellId cell, bool is_around) {
         if (is_around)
             carried_around_.insert(cell);
         else
             carried_around_.erase(cell);
     }
     /// Sets the living fragments of a carrier, in ascending order.
-    void set_fragments(ElementId carrier, std::vector<ElementId> fragments);
-    /// Drops the entry of a list that has become what an absent entry means.
-    static void drop_if_trivial(std::unordered_map<ElementId, std::vector<ElementId>>& lists,
-                                ElementId key);
+    void set_fragments(CarrierId carrier, std::vector<ElementId> fragments);
+    // Lists of which an absent entry means the one id with the number of the key.
+    template <class Key, class Id>
+    using Lists = std::unordered_map<Key, std::vector<Id>>;
+    template <class Key, class Id>
+    static ListOrOne<Id> ids_of(const Lists<Key, Id>& lists, Key key, Id one) {
+        const auto it = lists.find(key);
+        return it == lists.end() ? ListOrOne<Id>(one) : ListOrOne<Id>(it->second);
+    }
+    /// Returns the entry of a key, which is made if it was absent.
+    template <class Key, class Id>
+    static std::vector<Id>& entry_of(Lists<Key, Id>& lists, Key key) {
+        return lists.try_emplace(key, 1, with_number_of<Id>(key)).first->second;
+    }
+    /// Drops the entry of a key if it has become what an absent entry means.
+    template <class Key, class Id>
+    static void drop_if_trivial(Lists<Key, Id>& lists, Key key) {
+        const auto it = lists.find(key);
+        if (it != lists.end() && it->second == std::vector{with_number_of<Id>(key)})
+            lists.erase(it);
+    }
     /// True if star() is not empty.
     bool has_element_at(NodeId n) const;
-    std::span<const ElementId> fragments_of(const ElementId& carrier) const;
-    std::span<const ElementId> cells_of_carrier(const ElementId& carrier) const;
-    int region_of_carrier(ElementId carrier) const { return regions_[carrier.index()]; }
-    std::span<const ElementId> carriers_at(NodeId origin) const;
+    ListOrOne<ElementId> fragments_of(CarrierId carrier) const {
+        const auto first = with_number_of<ElementId>(carrier);
+        return ids_of(fragments_of_carrier_, carrier, is_alive(first) ? first : ElementId());
+    }
+    ListOrOne<CellId> cells_of_carrier(CarrierId carrier) const {
+        return ids_of(cells_of_carrier_, carrier, with_number_of<CellId>(carrier));
+    }
+    int region_of_carrier(CarrierId carrier) const { return regions_[carrier.index()]; }
+    std::span<const CarrierId> carriers_at(NodeId origin) const;
 
     double light_share_;
     FollowedEpoch epoch_;
@@ -241,10 +269,10 @@ class FragmentMesh {
     std::vector<NodeId> origins_of_carrier_;  // of its corners before any cut
     // By node before any cut: the carriers at it, in ascending order.
     std::vector<std::size_t> carrier_begin_;
-    std::vector<ElementId> carriers_at_;
+    std::vector<CarrierId> carriers_at_;
 
     // By fragment.
-    std::vector<ElementId> carriers_;
+    std::vector<CarrierId> carriers_;
     std::vector<std::uint8_t> is_alive_;
     std::vector<double> shares_;
     std::vector<std::size_t> corner_begin_{0};
@@ -256,16 +284,17 @@ class FragmentMesh {
     std::vector<Vec3> rest_positions_;
     std::vector<std::uint8_t> is_node_alive_;
     // By cell of the material.
-    std::vector<ElementId> carrier_of_cell_, fragment_of_cell_;
-    std::unordered_set<ElementId> carried_around_;
+    std::vector<CarrierId> carrier_of_cell_;
+    std::vector<ElementId> fragment_of_cell_;
+    std::unordered_set<CellId> carried_around_;
     std::vector<std::uint8_t> is_held_;  // by node of the material, also if it is dead
     // Scratch of FragmentParts, -1 between edits: by cell its part, by carrier its first part.
     std::vector<std::int32_t> part_of_cell_, first_part_;
 
-    // Exceptions: a carrier that is not listed has itself as its only cell and its only fragment.
-    std::unordered_map<ElementId, std::vector<ElementId>> cells_of_carrier_;
-    std::unordered_map<ElementId, std::vector<ElementId>> fragments_of_carrier_;
-    std::unordered_map<ElementId, std::vector<ElementId>> cells_of_fragment_;
+    // Exceptions: a carrier that is not listed has one cell and one fragment, of its own number.
+    Lists<CarrierId, CellId> cells_of_carrier_;
+    Lists<CarrierId, ElementId> fragments_of_carrier_;
+    Lists<ElementId, CellId> cells_of_fragment_;
 };
 
 }  // namespace incise::topology

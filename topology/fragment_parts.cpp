@@ -10,12 +10,12 @@
 namespace incise::topology {
 
 FragmentParts::~FragmentParts() {
-    for (const ElementId carrier : carriers_found_) fragments_.first_part_[carrier.index()] = -1;
+    for (const CarrierId carrier : carriers_found_) fragments_.first_part_[carrier.index()] = -1;
     for (const Part* part : parts_)
-        for (const ElementId cell : part->cells) fragments_.part_of_cell_[cell.index()] = -1;
+        for (const CellId cell : part->cells) fragments_.part_of_cell_[cell.index()] = -1;
 }
 
-FragmentParts::Range FragmentParts::of(ElementId carrier) {
+FragmentParts::Range FragmentParts::of(CarrierId carrier) {
     std::int32_t& first = fragments_.first_part_[carrier.index()];
     if (first < 0) {
         first = static_cast<std::int32_t>(parts_.size());
@@ -28,14 +28,14 @@ FragmentParts::Range FragmentParts::of(ElementId carrier) {
     return {begin, end};
 }
 
-std::size_t FragmentParts::of_cell(ElementId cell) {
+std::size_t FragmentParts::of_cell(CellId cell) {
     std::int32_t& part = fragments_.part_of_cell_[cell.index()];
     if (part < 0) of(fragments_.carrier_of_cell(cell));
     return static_cast<std::size_t>(part);
 }
 
 double FragmentParts::share_of(std::size_t part) {
-    const ElementId carrier = parts_[part]->carrier;
+    const CarrierId carrier = parts_[part]->carrier;
     const double whole = fragments_.volumes_[carrier.index()];
     double all = 0.0;
     std::size_t count = 0;
@@ -47,16 +47,16 @@ double FragmentParts::share_of(std::size_t part) {
     return count == 1 ? 1.0 : parts_[part]->volume / all;
 }
 
-bool FragmentParts::is_held(std::span<const ElementId> cells) const {
-    for (const ElementId cell : cells)
-        for (const NodeId n : material_.corners(cell))
+bool FragmentParts::is_held(std::span<const CellId> cells) const {
+    for (const CellId cell : cells)
+        for (const VertexId n : material_.corners(cell))
             if (fragments_.is_held(n)) return true;
     return false;
 }
 
-void FragmentParts::add(ElementId carrier, std::span<const ElementId> cells, double volume) {
+void FragmentParts::add(CarrierId carrier, std::span<const CellId> cells, double volume) {
     const std::size_t index = parts_.size();
-    for (const ElementId cell : cells)
+    for (const CellId cell : cells)
         fragments_.part_of_cell_[cell.index()] = static_cast<std::int32_t>(index);
     // Nothing frees a part: its lists are in the same memory.
     Part& part = *new (memory_.allocate(sizeof(Part), alignof(Part))) Part(memory_);
@@ -72,20 +72,20 @@ void FragmentParts::add(ElementId carrier, std::span<const ElementId> cells, dou
     parts_.push_back(&part);
 }
 
-void FragmentParts::find(ElementId carrier) {
+void FragmentParts::find(CarrierId carrier) {
     if (!fragments_.cells_of_carrier_.contains(carrier)) {  // whole, or what is left of it
-        if (material_.is_alive(carrier))
-            add(carrier, {&carrier, 1}, rest_volume(material_, carrier));
+        if (const auto cell = with_number_of<CellId>(carrier); material_.is_alive(cell))
+            add(carrier, {&cell, 1}, rest_volume(material_, cell));
         return;
     }
-    std::vector<ElementId>& cells = cells_;
+    std::vector<CellId>& cells = cells_;
     cells.clear();
-    for (const ElementId cell : fragments_.cells_of_carrier(carrier))
+    for (const CellId cell : fragments_.cells_of_carrier(carrier))
         if (material_.is_alive(cell)) cells.push_back(cell);
     DisjointSet groups(cells.size());
     for (std::size_t i = 0; i < cells.size(); ++i)
         for (int f = 0; f < material_.num_faces(cells[i]); ++f) {
-            const ElementId other = material_.neighbor({cells[i], f}).element;
+            const CellId other = material_.neighbor({cells[i], f}).cell;
             if (!other.is_valid() || other > cells[i] ||
                 fragments_.carrier_of_cell(other) != carrier)
                 continue;
@@ -93,7 +93,7 @@ void FragmentParts::find(ElementId carrier) {
             groups.join(static_cast<std::int32_t>(i),
                         static_cast<std::int32_t>(it - cells.begin()));
         }
-    std::vector<ElementId>& members = members_;
+    std::vector<CellId>& members = members_;
     for (std::size_t first = 0; first < cells.size(); ++first) {
         if (groups.find(static_cast<std::int32_t>(first)) != static_cast<std::int32_t>(first))
             continue;
@@ -114,9 +114,9 @@ std::span<const FragmentParts::Neighbor> FragmentParts::neighbors(std::size_t in
     assert(part.is_light);
     if (part.has_neighbors) return part.neighbors;
     part.has_neighbors = true;
-    for (const ElementId cell : part.cells)
+    for (const CellId cell : part.cells)
         for (int f = 0; f < material_.num_faces(cell); ++f) {
-            const ElementId other = material_.neighbor({cell, f}).element;
+            const CellId other = material_.neighbor({cell, f}).cell;
             if (!other.is_valid() || fragments_.carrier_of_cell(other) == part.carrier) continue;
             const std::size_t neighbor = of_cell(other);
             const double area = rest_area(material_, {cell, f});
@@ -132,19 +132,19 @@ std::span<const FragmentParts::Neighbor> FragmentParts::neighbors(std::size_t in
 }
 
 /// Returns the cells of other carriers that share faces with a part, one for each face.
-std::span<const ElementId> FragmentParts::cells_beyond(Part& part) {
+std::span<const CellId> FragmentParts::cells_beyond(Part& part) {
     if (part.has_beyond) return part.beyond;
     part.has_beyond = true;
-    for (const ElementId cell : part.cells)
+    for (const CellId cell : part.cells)
         for (int f = 0; f < material_.num_faces(cell); ++f) {
-            const ElementId other = material_.neighbor({cell, f}).element;
+            const CellId other = material_.neighbor({cell, f}).cell;
             if (other.is_valid() && fragments_.carrier_of_cell(other) != part.carrier)
                 part.beyond.push_back(other);
         }
     return part.beyond;
 }
 
-bool FragmentParts::is_undivided(ElementId carrier, std::span<const ElementId> parted) {
+bool FragmentParts::is_undivided(CarrierId carrier, std::span<const CarrierId> parted) {
     if (std::ranges::binary_search(parted, carrier)) return false;
     const auto [first, end] = of(carrier);
     return end - first == 1 && parts_[first]->is_element && !parts_[first]->is_light;
@@ -153,8 +153,8 @@ bool FragmentParts::is_undivided(ElementId carrier, std::span<const ElementId> p
 /// Returns the light parts whose masters the edit may change, in the order of their heads: those of
 /// touched carriers and beside them, and all that are connected with these through light parts or
 /// carriers.
-std::vector<std::size_t> FragmentParts::light_cluster(std::span<const ElementId> touched,
-                                                      std::span<const ElementId> parted) {
+std::vector<std::size_t> FragmentParts::light_cluster(std::span<const CarrierId> touched,
+                                                      std::span<const CarrierId> parted) {
     std::vector<std::size_t> cluster;
     const auto add = [&](std::size_t part) {
         if (!parts_[part]->is_light || parts_[part]->is_in_cluster) return;
@@ -162,9 +162,9 @@ std::vector<std::size_t> FragmentParts::light_cluster(std::span<const ElementId>
         cluster.push_back(part);
     };
     const auto add_beside = [&](std::size_t part) {
-        for (const ElementId cell : cells_beyond(*parts_[part])) add(of_cell(cell));
+        for (const CellId cell : cells_beyond(*parts_[part])) add(of_cell(cell));
     };
-    for (const ElementId carrier : touched) {
+    for (const CarrierId carrier : touched) {
         if (is_undivided(carrier, parted)) continue;
         for (auto [part, end] = of(carrier); part < end; ++part) {
             add(part);
@@ -186,10 +186,10 @@ std::vector<std::size_t> FragmentParts::light_cluster(std::span<const ElementId>
 // that reach none join their largest light neighbour if it is larger. The largest of all becomes an
 // element although it is light. So does a part without which the material would come apart, and one
 // that is held.
-std::vector<ElementId> FragmentParts::join_light(std::span<const ElementId> touched,
-                                                 std::span<const ElementId> parted) {
+std::vector<CarrierId> FragmentParts::join_light(std::span<const CarrierId> touched,
+                                                 std::span<const CarrierId> parted) {
     std::vector<std::size_t> lights = light_cluster(touched, parted);
-    std::vector<ElementId> open(touched.begin(), touched.end());
+    std::vector<CarrierId> open(touched.begin(), touched.end());
     for (const std::size_t part : lights) open.push_back(parts_[part]->carrier);
     std::sort(open.begin(), open.end());
     open.erase(std::unique(open.begin(), open.end()), open.end());

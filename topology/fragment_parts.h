@@ -23,10 +23,10 @@ class FragmentParts {
         double area;  // of the shared faces, at rest, m2
     };
     struct Part {
-        ElementId carrier;
-        std::pmr::vector<ElementId> cells;     // in ascending order
+        CarrierId carrier;
+        std::pmr::vector<CellId> cells;        // in ascending order
         std::pmr::vector<Neighbor> neighbors;  // see neighbors()
-        std::pmr::vector<ElementId> beyond;    // see for_each_known_neighbor()
+        std::pmr::vector<CellId> beyond;       // see for_each_known_neighbor()
         double volume = 0.0;                   // at rest, m3
         std::size_t master = 0;   // the part whose fragment carries it; see join_light()
         ElementId fragment;       // that carries it
@@ -40,7 +40,7 @@ class FragmentParts {
         bool is_kept_together = false;  // see keep_bridges()
         bool is_waiting = false;        // see join_in_rounds()
         bool is_open = false;           // of a carrier that join_light() returned; set by users
-        ElementId head() const { return cells.front(); }
+        CellId head() const { return cells.front(); }
 
         explicit Part(std::pmr::memory_resource& memory)
             : cells(&memory), neighbors(&memory), beyond(&memory) {}
@@ -59,9 +59,9 @@ class FragmentParts {
 
     Part& operator[](std::size_t part) { return *parts_[part]; }
     /// Returns the parts of a carrier. References to parts stay valid.
-    Range of(ElementId carrier);
+    Range of(CarrierId carrier);
     /// Returns the part of a living cell.
-    std::size_t of_cell(ElementId cell);
+    std::size_t of_cell(CellId cell);
     /// Returns the volume of a part over that of its carrier. The shares of all parts of a carrier
     /// that no edit has taken anything from add up to 1.
     double share_of(std::size_t part);
@@ -73,7 +73,7 @@ class FragmentParts {
     /// parts have not been asked for yet.
     template <class Visit>
     void for_each_known_neighbor(std::size_t index, Visit visit) {
-        for (const ElementId cell : cells_beyond(*parts_[index]))
+        for (const CellId cell : cells_beyond(*parts_[index]))
             if (const std::int32_t part = fragments_.part_of_cell_[cell.index()]; part >= 0)
                 visit(static_cast<std::size_t>(part));
     }
@@ -82,18 +82,18 @@ class FragmentParts {
     /// edit may change. Returns the carriers of these parts, in ascending order.
     /// @param parted  in ascending order, those of which an edit removed, parted or joined
     /// something
-    std::vector<ElementId> join_light(std::span<const ElementId> touched,
-                                      std::span<const ElementId> parted);
+    std::vector<CarrierId> join_light(std::span<const CarrierId> touched,
+                                      std::span<const CarrierId> parted);
     /// True if all of a carrier is one part that is an element, and was so before the edit.
-    bool is_undivided(ElementId carrier, std::span<const ElementId> parted);
+    bool is_undivided(CarrierId carrier, std::span<const CarrierId> parted);
 
   private:
-    void find(ElementId carrier);
-    bool is_held(std::span<const ElementId> cells) const;
-    std::span<const ElementId> cells_beyond(Part& part);
-    void add(ElementId carrier, std::span<const ElementId> cells, double volume);
-    std::vector<std::size_t> light_cluster(std::span<const ElementId> touched,
-                                           std::span<const ElementId> parted);
+    void find(CarrierId carrier);
+    bool is_held(std::span<const CellId> cells) const;
+    std::span<const CellId> cells_beyond(Part& part);
+    void add(CarrierId carrier, std::span<const CellId> cells, double volume);
+    std::vector<std::size_t> light_cluster(std::span<const CarrierId> touched,
+                                           std::span<const CarrierId> parted);
     bool are_in_one_region(std::size_t a, std::size_t b) const {
         return fragments_.region_of_carrier(parts_[a]->carrier) ==
                fragments_.region_of_carrier(parts_[b]->carrier);
@@ -111,10 +111,10 @@ class FragmentParts {
 
     FragmentMesh& fragments_;
     const Mesh& material_;
-    std::vector<ElementId> carriers_found_;       // whose parts are known
+    std::vector<CarrierId> carriers_found_;       // whose parts are known
     std::pmr::monotonic_buffer_resource memory_;  // of the parts
     std::vector<Part*> parts_;                    // those of a carrier follow each other
-    std::vector<ElementId> cells_, members_;      // scratch of find()
+    std::vector<CellId> cells_, members_;         // scratch of find()
 };
 
 }  // namespace incise::topology

@@ -35,7 +35,7 @@ FragmentChanges FragmentUpdate::run() {
 }
 
 void FragmentUpdate::divide(FragmentMesh& fragments, const Mesh& material,
-                            std::vector<ElementId> carriers) {
+                            std::vector<CarrierId> carriers) {
     const ChangeSet no_edit;
     FragmentUpdate update(fragments, material, no_edit);
     update.begin();
@@ -64,16 +64,16 @@ void FragmentUpdate::follow_cells() {
     carrier_of.resize(capacity);
     fragment_of.resize(capacity);
     fragments_.part_of_cell_.resize(capacity, -1);
-    const auto list_of = [&](ElementId carrier) -> std::vector<ElementId>& {
-        return fragments_.cells_of_carrier_.try_emplace(carrier, 1, carrier).first->second;
+    const auto list_of = [&](CarrierId carrier) -> std::vector<CellId>& {
+        return fragments_.entry_of(fragments_.cells_of_carrier_, carrier);
     };
-    const auto part = [&](ElementId cell) { parted_carriers_.push_back(carrier_of[cell.index()]); };
-    for (const ElementRecord& record : changes_.elements_removed) {
+    const auto part = [&](CellId cell) { parted_carriers_.push_back(carrier_of[cell.index()]); };
+    for (const CellRecord& record : changes_.elements_removed) {
         std::erase(list_of(carrier_of[record.id.index()]), record.id);
         part(record.id);
     }
-    for (const ElementRecord& record : changes_.elements_added) {  // parents before their parts
-        const ElementId cell = record.id;
+    for (const CellRecord& record : changes_.elements_added) {  // parents before their parts
+        const CellId cell = record.id;
         if (cell.index() >= changes_.element_capacity_before) {
             carrier_of[cell.index()] = carrier_of[record.parent.index()];
             fragment_of[cell.index()] = fragment_of[record.parent.index()];
@@ -86,20 +86,20 @@ void FragmentUpdate::follow_cells() {
     }
     for (const auto* pairs : {&changes_.faces_opened, &changes_.faces_closed})
         for (const FacePair& pair : *pairs) {
-            part(pair.a.element);
-            part(pair.b.element);
+            part(pair.a.cell);
+            part(pair.b.cell);
         }
     make_sorted_set(parted_carriers_);
     touched_carriers_.insert(touched_carriers_.end(), parted_carriers_.begin(),
                              parted_carriers_.end());
     make_sorted_set(touched_carriers_);
-    for (const ElementId carrier : touched_carriers_)
+    for (const CarrierId carrier : touched_carriers_)
         FragmentMesh::drop_if_trivial(fragments_.cells_of_carrier_, carrier);
 }
 
 /// Adds a fragment for a cell that is an element now.
-ElementId FragmentUpdate::add_fragment(ElementId cell) {
-    const ElementId carrier = fragments_.carrier_of_cell(cell);
+ElementId FragmentUpdate::add_fragment(CellId cell) {
+    const CarrierId carrier = fragments_.carrier_of_cell(cell);
     const ElementId e(fragments_.element_capacity());
     fragments_.carriers_.push_back(carrier);
     fragments_.is_alive_.push_back(1);
@@ -115,14 +115,14 @@ ElementId FragmentUpdate::add_fragment(ElementId cell) {
 }
 
 void FragmentUpdate::assign_fragments() {
-    for (const ElementId carrier : open_carriers_) assign_fragments_of(carrier);
+    for (const CarrierId carrier : open_carriers_) assign_fragments_of(carrier);
     carry_cells();
     update_shares();
 }
 
 /// Gives each part of a carrier that is an element a fragment: one that has carried cells of it
 /// before, or a new one.
-void FragmentUpdate::assign_fragments_of(ElementId carrier) {
+void FragmentUpdate::assign_fragments_of(CarrierId carrier) {
     const auto listed = fragments_.fragments_of(carrier);
     const std::vector<ElementId> before(listed.begin(), listed.end());
     for (const ElementId e : before) note_corners(e);
@@ -133,7 +133,7 @@ void FragmentUpdate::assign_fragments_of(ElementId carrier) {
         part.is_element = part.master == i;
         if (!part.is_element) continue;
         ElementId own;
-        for (const ElementId cell : part.cells) {
+        for (const CellId cell : part.cells) {
             const ElementId e = fragments_.fragment_of_cell(cell);
             if (fragments_.is_own(cell) && fragments_.is_alive(e) &&
                 std::ranges::find(now, e) == now.end() && (!own.is_valid() || e < own))
@@ -153,30 +153,29 @@ void FragmentUpdate::assign_fragments_of(ElementId carrier) {
 
 /// Writes which fragment carries each cell.
 void FragmentUpdate::carry_cells() {
-    auto& lists = fragments_.cells_of_fragment_;
-    const auto list_of = [&](ElementId e) -> std::vector<ElementId>& {
+    const auto list_of = [&](ElementId e) -> std::vector<CellId>& {
         shares_before_.try_emplace(e, fragments_.share(e));
-        return lists.try_emplace(e, 1, e).first->second;
+        return fragments_.entry_of(fragments_.cells_of_fragment_, e);
     };
-    const auto leave = [&](ElementId cell) {
+    const auto leave = [&](CellId cell) {
         const ElementId from = fragments_.fragment_of_cell(cell);
         fragment_before_.push_back({cell, from, from, fragments_.is_carried_around(cell)});
         std::erase(list_of(from), cell);
     };
-    for (const ElementRecord& record : changes_.elements_removed) {
+    for (const CellRecord& record : changes_.elements_removed) {
         leave(record.id);
         fragments_.fragment_of_cell_[record.id.index()] = {};
         fragments_.set_carried_around(record.id, false);
     }
-    for (const ElementRecord& record : changes_.elements_added)
+    for (const CellRecord& record : changes_.elements_added)
         fragment_before_.push_back({record.id, ElementId(), fragments_.fragment_of_cell(record.id),
                                     fragments_.is_carried_around(record.id)});
-    for (const ElementId carrier : open_carriers_)
+    for (const CarrierId carrier : open_carriers_)
         for (auto [i, end] = parts_.of(carrier); i < end; ++i) {
             const ElementId to = parts_[parts_[i].master].fragment;
             const bool is_around = !parts_[i].is_element && fragments_.carrier(to) == carrier;
             shares_before_.try_emplace(to, fragments_.share(to));  // a cell may have shrunk
-            for (const ElementId cell : parts_[i].cells) {
+            for (const CellId cell : parts_[i].cells) {
                 const ElementId from = fragments_.fragment_of_cell(cell);
                 if (is_added(cell))
                     insert_sorted(list_of(to), cell);
@@ -196,16 +195,15 @@ void FragmentUpdate::update_shares() {
     for (const auto& [e, before] : shares_before_) {
         if (!fragments_.is_alive(e)) continue;
         fragments_.shares_[e.index()] = share_of(e);
-        const auto cells = fragments_.cells_of(e);
-        if (cells.size() == 1 && cells.front() == e) fragments_.cells_of_fragment_.erase(e);
+        fragments_.drop_if_trivial(fragments_.cells_of_fragment_, e);
     }
 }
 
 double FragmentUpdate::share_of(ElementId fragment) {
-    const ElementId carrier = fragments_.carrier(fragment);
+    const CarrierId carrier = fragments_.carrier(fragment);
     double own = 0.0, others = 0.0;
     std::vector<std::size_t> parts;
-    for (const ElementId cell : fragments_.cells_of(fragment)) {
+    for (const CellId cell : fragments_.cells_of(fragment)) {
         const std::size_t part = parts_.of_cell(cell);
         if (std::ranges::find(parts, part) != parts.end()) continue;
         parts.push_back(part);
@@ -221,8 +219,8 @@ void FragmentUpdate::note_corners(ElementId fragment) {
     corners_before_.try_emplace(fragment, corners.begin(), corners.end());
 }
 
-bool FragmentUpdate::is_added(ElementId cell) const {
-    return std::ranges::binary_search(changes_.elements_added, cell, {}, &ElementRecord::id);
+bool FragmentUpdate::is_added(CellId cell) const {
+    return std::ranges::binary_search(changes_.elements_added, cell, {}, &CellRecord::id);
 }
 
 /// Returns the node that a fragment, or the fragment that it is a part of, had at a corner before
@@ -259,7 +257,7 @@ std::span<const NodeId> FragmentUpdate::corners_before(ElementId fragment) const
 /// Appends the groups of parts that are connected at a node before any cut.
 void FragmentUpdate::find_groups(NodeId origin, std::vector<Group>& groups) {
     std::vector<std::size_t> parts;
-    for (const ElementId carrier : fragments_.carriers_at(origin))
+    for (const CarrierId carrier : fragments_.carriers_at(origin))
         for (auto [part, end] = parts_.of(carrier); part < end; ++part) {
             parts_[part].local = static_cast<std::int32_t>(parts.size());
             parts.push_back(part);
@@ -351,7 +349,7 @@ void FragmentUpdate::merge(NodeId a, NodeId b) {
 // fragment. The others get copies.
 void FragmentUpdate::assign_nodes() {
     std::vector<NodeId> origins, touched;
-    for (const ElementId carrier : open_carriers_)
+    for (const CarrierId carrier : open_carriers_)
         if (!parts_.is_undivided(carrier, parted_carriers_))
             for (const NodeId origin : fragments_.origins_of(carrier)) origins.push_back(origin);
     make_sorted_set(origins);
@@ -414,7 +412,7 @@ void FragmentUpdate::remove_unused_nodes(std::vector<NodeId> touched) {
 
 FragmentChanges FragmentUpdate::differences() {
     FragmentChanges result;
-    ChangeSet& edit = result.mesh;
+    auto& edit = result.mesh;
     edit.epoch_before = changes_.epoch_before;
     edit.epoch_after = changes_.epoch_after;
     edit.node_capacity_before = node_capacity_before_;
@@ -444,7 +442,7 @@ FragmentChanges FragmentUpdate::differences() {
                 edit.rewired.push_back({e, static_cast<int>(k), before[k], now[k]});
     }
     std::ranges::sort(edit.rewired, {},
-                      [](const Rewiring& r) { return std::pair(r.element, r.corner); });
+                      [](const auto& r) { return std::pair(r.element, r.corner); });
     for (const auto& [e, before] : shares_before_)
         if (fragments_.is_alive(e) && fragments_.share(e) != before && !parent_of(e).is_valid())
             result.shares.push_back({e, before, fragments_.share(e)});
@@ -455,7 +453,7 @@ FragmentChanges FragmentUpdate::differences() {
             material_.is_alive(cell) ? fragments_.fragment_of_cell(cell) : ElementId();
         const bool is_around = fragments_.is_carried_around(cell);
         if (now == before && is_around == was_around) continue;
-        const ElementId carrier = fragments_.carrier_of_cell(cell);
+        const CarrierId carrier = fragments_.carrier_of_cell(cell);
         const bool is_other = inherited != now;
         const auto is_away = [&](ElementId e, bool is_around_there) {
             return e.is_valid() && is_other &&

@@ -27,7 +27,7 @@ class FragmentUpdate {
     /// Finds the fragments of a body that is built, in which each carrier is still one fragment.
     /// @param carriers  those that consist of several cells, or are only a part of their volume
     static void divide(FragmentMesh& fragments, const Mesh& material,
-                       std::vector<ElementId> carriers);
+                       std::vector<CarrierId> carriers);
 
   private:
     using Part = FragmentParts::Part;
@@ -40,14 +40,14 @@ class FragmentUpdate {
     void begin();
     void follow_cells();
     void find_fragments();
-    bool is_added(ElementId cell) const;
+    bool is_added(CellId cell) const;
 
     void assign_fragments();
-    void assign_fragments_of(ElementId carrier);
+    void assign_fragments_of(CarrierId carrier);
     void carry_cells();
     void update_shares();
     double share_of(ElementId fragment);
-    ElementId add_fragment(ElementId cell);
+    ElementId add_fragment(CellId cell);
 
     void assign_nodes();
     bool is_settled(NodeId origin, std::span<const std::size_t> parts, DisjointSet& connected);
@@ -76,14 +76,14 @@ class FragmentUpdate {
     const Mesh& material_;
     const ChangeSet& changes_;
 
-    std::vector<ElementId> touched_carriers_;  // in ascending order
-    std::vector<ElementId> parted_carriers_;   // those of them that were not only divided
-    std::vector<ElementId> open_carriers_;     // these, and those whose parts are joined anew
+    std::vector<CarrierId> touched_carriers_;  // in ascending order
+    std::vector<CarrierId> parted_carriers_;   // those of them that were not only divided
+    std::vector<CarrierId> open_carriers_;     // these, and those whose parts are joined anew
     FragmentParts parts_{fragments_, material_};
 
     /// A cell that another fragment carries now, or none.
     struct CellBefore {
-        ElementId cell;
+        CellId cell;
         ElementId before;     // that carried it; invalid if the edit added the cell
         ElementId inherited;  // that carried it, or its parent
         bool was_around;      // the cell, or its parent: see FragmentMesh::is_carried_around()

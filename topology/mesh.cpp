@@ -30,7 +30,7 @@ constexpr std::array<CornerFaces, num_cell_kinds> faces_of_corner = {
 
 /// Calls visit(face) for each face of `e` that has the node `n` among its corners.
 template <class Visit>
-void for_faces_at(const Mesh& mesh, ElementId e, NodeId n, Visit visit) {
+void for_faces_at(const Mesh& mesh, CellId e, VertexId n, Visit visit) {
     const int corner = mesh.corner_of(e, n);
     if (corner < 0) return;
     unsigned faces =
@@ -40,7 +40,7 @@ void for_faces_at(const Mesh& mesh, ElementId e, NodeId n, Visit visit) {
 
 /// True if `e` is among the elements from `begin` on. The lists are short. A search of the whole
 /// list without an early exit is faster than marking elements, and several threads may do it.
-bool is_known(const std::vector<ElementId>& elements, std::size_t begin, ElementId e) {
+bool is_known(const std::vector<CellId>& elements, std::size_t begin, CellId e) {
     int count = 0;
     for (std::size_t i = begin; i < elements.size(); ++i) count += elements[i] == e ? 1 : 0;
     return count != 0;
@@ -48,15 +48,15 @@ bool is_known(const std::vector<ElementId>& elements, std::size_t begin, Element
 
 }  // namespace
 
-void collect_star(const Mesh& mesh, NodeId n, ElementId start, std::vector<ElementId>& elements) {
+void collect_star(const Mesh& mesh, VertexId n, CellId start, std::vector<CellId>& elements) {
     const std::size_t begin = elements.size();
     // One bit for each remainder of ids: a bit that is not set shows that an element is not known.
-    const auto bit = [](ElementId e) { return std::uint64_t{1} << (e.index() % 64); };
+    const auto bit = [](CellId e) { return std::uint64_t{1} << (e.index() % 64); };
     std::uint64_t known_bits = bit(start);
     elements.push_back(start);
     for (std::size_t next = begin; next < elements.size(); ++next)
         for_faces_at(mesh, elements[next], n, [&](FaceId f) {
-            const ElementId other = mesh.neighbor(f).element;
+            const CellId other = mesh.neighbor(f).cell;
             if (!other.is_valid()) return;
             if ((known_bits & bit(other)) != 0 && is_known(elements, begin, other)) return;
             known_bits |= bit(other);
@@ -65,40 +65,40 @@ void collect_star(const Mesh& mesh, NodeId n, ElementId start, std::vector<Eleme
     std::sort(elements.begin() + static_cast<std::ptrdiff_t>(begin), elements.end());
 }
 
-void collect_edge_ring(const Mesh& mesh, ElementId e, NodeId a, NodeId b,
-                       std::vector<ElementId>& elements) {
+void collect_edge_ring(const Mesh& mesh, CellId e, VertexId a, VertexId b,
+                       std::vector<CellId>& elements) {
     const std::size_t begin = elements.size();
     elements.push_back(e);
     for (std::size_t next = begin; next < elements.size(); ++next)
         for_faces_at(mesh, elements[next], a, [&](FaceId f) {
-            const ElementId other = mesh.neighbor(f).element;
+            const CellId other = mesh.neighbor(f).cell;
             if (!other.is_valid() || is_known(elements, begin, other)) return;
             for (int p = 0; p < mesh.face_size(f); ++p)
                 if (mesh.face_corner(f, p) == b) elements.push_back(other);
         });
 }
 
-void Mesh::star(NodeId n, std::vector<ElementId>& elements) const {
+void Mesh::star(VertexId n, std::vector<CellId>& elements) const {
     elements.clear();
     if (is_alive(n)) collect_star(*this, n, incident_element(n), elements);
 }
 
-int Mesh::corner_of(ElementId e, NodeId n) const {
+int Mesh::corner_of(CellId e, VertexId n) const {
     const auto nodes = corners(e);
     const auto it = std::find(nodes.begin(), nodes.end(), n);
     return it == nodes.end() ? -1 : static_cast<int>(it - nodes.begin());
 }
 
-std::int64_t Mesh::label(NodeId n) const {
+std::int64_t Mesh::label(VertexId n) const {
     return n.index() < node_labels_.size() ? node_labels_[n.index()] : n.value;
 }
 
-std::int64_t Mesh::label(ElementId e) const {
+std::int64_t Mesh::label(CellId e) const {
     return e.index() < element_labels_.size() ? element_labels_[e.index()] : e.value;
 }
 
-std::vector<NodeId> Mesh::nodes_with_label(std::int64_t label) const {
-    std::vector<NodeId> nodes;
+std::vector<VertexId> Mesh::nodes_with_label(std::int64_t label) const {
+    std::vector<VertexId> nodes;
     if (label < 0) return nodes;
     if (static_cast<std::size_t>(label) >= label_nodes_.size()) {
         if (static_cast<std::size_t>(label) < node_capacity())
@@ -113,7 +113,7 @@ std::vector<NodeId> Mesh::nodes_with_label(std::int64_t label) const {
     return nodes;
 }
 
-void Mesh::append_element_row(CellKind kind, int region, std::span<const NodeId> corners) {
+void Mesh::append_element_row(CellKind kind, int region, std::span<const VertexId> corners) {
     kinds_.push_back(kind);
     regions_.push_back(region);
     alive_.push_back(1);
@@ -145,7 +145,7 @@ void Mesh::glue(FaceId a, FaceId b, int shift) {
     set_neighbor(a, b);
     set_neighbor(b, a);
     for (const FaceId f : {a, b})
-        inside_faces_[f.element.index()] |= static_cast<std::uint8_t>(1 << f.face);
+        inside_faces_[f.cell.index()] |= static_cast<std::uint8_t>(1 << f.face);
 }
 
 void Mesh::unglue(FaceId a) {
@@ -177,7 +177,7 @@ double rest_area(const Mesh& mesh, FaceId f) {
 }
 
 // The loop runs in ascending order of ids, in which neighbours are near each other in memory.
-double rest_volume(const Mesh& mesh, ElementId e) {
+double rest_volume(const Mesh& mesh, CellId e) {
     std::array<Vec3, max_corners> x;
     const auto corners = mesh.corners(e);
     for (std::size_t k = 0; k < corners.size(); ++k) x[k] = mesh.rest_position(corners[k]);
@@ -186,16 +186,16 @@ double rest_volume(const Mesh& mesh, ElementId e) {
 
 Components components(const Mesh& mesh) {
     DisjointSet groups(mesh.element_capacity());
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         std::int32_t own = e.value;
         for (int f = 0; f < mesh.num_faces(e); ++f) {
-            const ElementId other = mesh.neighbor({e, f}).element;
+            const CellId other = mesh.neighbor({e, f}).cell;
             if (other.is_valid() && other < e) own = groups.join(own, other.value);
         }
     }
     Components result;
     result.of_element.assign(mesh.element_capacity(), -1);
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         const std::int32_t first = groups.find(e.value);
         result.of_element[e.index()] =
             first == e.value ? result.count++ : result.of_element[static_cast<std::size_t>(first)];
@@ -205,14 +205,14 @@ Components components(const Mesh& mesh) {
 
 std::vector<FaceId> boundary_faces(const Mesh& mesh) {
     std::vector<FaceId> faces;
-    for (const ElementId e : mesh.elements())
+    for (const CellId e : mesh.elements())
         for (int f = 0; f < mesh.num_faces(e); ++f)
             if (!mesh.neighbor({e, f}).is_valid()) faces.push_back({e, f});
     return faces;
 }
 
-MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions, std::vector<NodeId>* nodes,
-                      std::vector<ElementId>* elements) {
+MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions,
+                      std::vector<VertexId>* nodes, std::vector<CellId>* elements) {
     MeshData data;
     data.points.reserve(mesh.num_nodes());
     if (nodes) {
@@ -220,14 +220,14 @@ MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions, std::ve
         nodes->reserve(mesh.num_nodes());
     }
     std::vector<std::int64_t> row_of_node(mesh.node_capacity(), -1);
-    for (const NodeId n : mesh.nodes()) {
+    for (const VertexId n : mesh.nodes()) {
         row_of_node[n.index()] = static_cast<std::int64_t>(data.points.size());
         data.points.push_back(positions[n.index()]);
         if (nodes) nodes->push_back(n);
     }
 
     std::size_t num_corners = 0;
-    for (const ElementId e : mesh.elements()) num_corners += mesh.corners(e).size();
+    for (const CellId e : mesh.elements()) num_corners += mesh.corners(e).size();
     data.kinds.reserve(mesh.num_elements());
     data.offsets.reserve(mesh.num_elements() + 1);
     data.regions.reserve(mesh.num_elements());
@@ -236,8 +236,8 @@ MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions, std::ve
         elements->clear();
         elements->reserve(mesh.num_elements());
     }
-    for (const ElementId e : mesh.elements()) {
-        for (const NodeId n : mesh.corners(e)) data.corners.push_back(row_of_node[n.index()]);
+    for (const CellId e : mesh.elements()) {
+        for (const VertexId n : mesh.corners(e)) data.corners.push_back(row_of_node[n.index()]);
         data.kinds.push_back(mesh.kind(e));
         data.offsets.push_back(data.corners.size());
         data.regions.push_back(mesh.region(e));

@@ -52,20 +52,20 @@ class Mesh {
     /// Returns one more than the highest id, alive or dead: the size of arrays indexed by id.
     std::size_t node_capacity() const { return incident_elements_.size(); }
     std::size_t element_capacity() const { return kinds_.size(); }
-    bool is_alive(NodeId n) const { return incident_elements_[n.index()].is_valid(); }
-    bool is_alive(ElementId e) const { return alive_[e.index()] != 0; }
+    bool is_alive(VertexId n) const { return incident_elements_[n.index()].is_valid(); }
+    bool is_alive(CellId e) const { return alive_[e.index()] != 0; }
     /// Returns the ids of the living nodes in ascending order, as a range.
     /// @pre  the mesh is not edited while a loop over the range runs
-    LivingIds<NodeId, Mesh> nodes() const { return {*this, node_capacity()}; }
+    LivingIds<VertexId, Mesh> nodes() const { return {*this, node_capacity()}; }
     /// Returns the ids of the living elements as nodes() does those of the nodes.
-    LivingIds<ElementId, Mesh> elements() const { return {*this, element_capacity()}; }
+    LivingIds<CellId, Mesh> elements() const { return {*this, element_capacity()}; }
 
     /// Returns the rest positions by node id, m. Dead nodes keep their last rest position.
     std::span<const Vec3> rest_positions() const { return rest_positions_; }
-    const Vec3& rest_position(NodeId n) const { return rest_positions_[n.index()]; }
+    const Vec3& rest_position(VertexId n) const { return rest_positions_[n.index()]; }
 
-    CellKind kind(ElementId e) const { return kinds_[e.index()]; }
-    int region(ElementId e) const { return regions_[e.index()]; }
+    CellKind kind(CellId e) const { return kinds_[e.index()]; }
+    int region(CellId e) const { return regions_[e.index()]; }
 
     /// All elements at once, by element id, for renderers and other programs that copy them. Dead
     /// elements keep their last values.
@@ -76,7 +76,7 @@ class Mesh {
         std::span<const std::uint8_t> is_alive;
         /// Element e has the corners from corner_begin[e] to before corner_begin[e + 1].
         std::span<const std::size_t> corner_begin;
-        std::span<const NodeId> corners;
+        std::span<const VertexId> corners;
         /// Likewise for its faces, in the order of cell_kind.h.
         std::span<const std::size_t> face_begin;
         std::span<const FaceId> neighbors;  ///< as neighbor()
@@ -88,49 +88,47 @@ class Mesh {
     }
 
     /// Returns the corners in the order of cell_kind.h. A dead element keeps its last corners.
-    std::span<const NodeId> corners(ElementId e) const {
+    std::span<const VertexId> corners(CellId e) const {
         return {corners_.data() + corner_begin_[e.index()],
                 corner_begin_[e.index() + 1] - corner_begin_[e.index()]};
     }
     /// Returns which corner of `e` the node is; -1 if it is none.
-    int corner_of(ElementId e, NodeId n) const;
-    int num_faces(ElementId e) const { return traits(kind(e)).num_faces; }
+    int corner_of(CellId e, VertexId n) const;
+    int num_faces(CellId e) const { return traits(kind(e)).num_faces; }
     /// Returns the node at a position in the face, in the order of cell_kind.h.
-    NodeId face_corner(FaceId f, int position) const {
-        return corners(f.element)[static_cast<std::size_t>(
-            traits(kind(f.element)).face(f.face)[static_cast<std::size_t>(position)])];
+    VertexId face_corner(FaceId f, int position) const {
+        return corners(f.cell)[static_cast<std::size_t>(
+            traits(kind(f.cell)).face(f.face)[static_cast<std::size_t>(position)])];
     }
     int face_size(FaceId f) const {
-        return static_cast<int>(traits(kind(f.element)).face(f.face).size());
+        return static_cast<int>(traits(kind(f.cell)).face(f.face).size());
     }
     /// Returns the other side of a face; invalid on the boundary.
     FaceId neighbor(FaceId f) const {
-        return neighbors_[face_begin_[f.element.index()] + static_cast<std::size_t>(f.face)];
+        return neighbors_[face_begin_[f.cell.index()] + static_cast<std::size_t>(f.face)];
     }
 
     /// True if the face lay inside the body before any cut: it is, or was, joined to another face.
     /// The parts of a face that is divided take its value. The source can name further faces:
     /// MeshData::cut_faces.
-    bool was_inside(FaceId f) const {
-        return (inside_faces_[f.element.index()] >> f.face & 1) != 0;
-    }
+    bool was_inside(FaceId f) const { return (inside_faces_[f.cell.index()] >> f.face & 1) != 0; }
     /// True if the face is on a cut: it is on the boundary, and lay inside the body before any cut.
     bool is_on_cut(FaceId f) const { return !neighbor(f).is_valid() && was_inside(f); }
 
     /// Writes the elements at a node (its star) to `elements`, in ascending order. A dead node has
     /// none. Cost: about a microsecond; see collect_star().
-    void star(NodeId n, std::vector<ElementId>& elements) const;
+    void star(VertexId n, std::vector<CellId>& elements) const;
     /// Returns the element with the lowest id at the node; invalid for a dead node.
-    ElementId incident_element(NodeId n) const { return incident_elements_[n.index()]; }
+    CellId incident_element(VertexId n) const { return incident_elements_[n.index()]; }
 
     /// Returns the number by which the user knows the node or element: its number in the source, or
     /// its id if an edit has made it.
-    std::int64_t label(NodeId n) const;
-    std::int64_t label(ElementId e) const;
+    std::int64_t label(VertexId n) const;
+    std::int64_t label(CellId e) const;
     /// Returns the nodes with this label: several if the point of the source was pinched, none if
     /// there is no such label. A point that was welded to another one gives the nodes of that other
     /// point. Nodes may be dead, for example if no element used the point: check is_alive().
-    std::vector<NodeId> nodes_with_label(std::int64_t label) const;
+    std::vector<VertexId> nodes_with_label(std::int64_t label) const;
     /// Returns the carriers of the source, for FragmentMesh: by id of the elements that the mesh
     /// was built with. Empty if the body had no cuts, and in a mesh that an archive has restored.
     const Carriers& source_carriers() const { return source_carriers_; }
@@ -148,33 +146,33 @@ class Mesh {
     friend class MeshReplay;
     Mesh() = default;
 
-    void append_element_row(CellKind kind, int region, std::span<const NodeId> corners);
+    void append_element_row(CellKind kind, int region, std::span<const VertexId> corners);
     void truncate(std::size_t node_capacity, std::size_t element_capacity);
     /// Joins two faces in the map and in the arrays, which makes them inside for ever: see
     /// was_inside(). The corner at position 0 of `a` meets the corner at position `shift` of `b`.
     void glue(FaceId a, FaceId b, int shift);
     void unglue(FaceId a);
     void set_neighbor(FaceId f, FaceId other) {
-        neighbors_[face_begin_[f.element.index()] + static_cast<std::size_t>(f.face)] = other;
+        neighbors_[face_begin_[f.cell.index()] + static_cast<std::size_t>(f.face)] = other;
     }
 
     std::uint64_t epoch_ = 0;
     std::size_t num_nodes_ = 0, num_elements_ = 0;
 
     std::vector<Vec3> rest_positions_;
-    std::vector<ElementId> incident_elements_;
+    std::vector<CellId> incident_elements_;
 
     std::vector<CellKind> kinds_;
     std::vector<std::uint8_t> alive_;
     std::vector<int> regions_;
     std::vector<std::size_t> corner_begin_{0}, face_begin_{0};
-    std::vector<NodeId> corners_;
+    std::vector<VertexId> corners_;
     std::vector<FaceId> neighbors_;
     std::vector<std::uint8_t> inside_faces_;  // by element, bit f for face f: see was_inside()
 
     std::vector<std::int64_t> node_labels_, element_labels_;
-    std::vector<NodeId> label_nodes_;                       ///< by label; the first node if pinched
-    std::vector<std::pair<std::int64_t, NodeId>> pinched_;  ///< label, further node; sorted
+    std::vector<VertexId> label_nodes_;  ///< by label; the first node if pinched
+    std::vector<std::pair<std::int64_t, VertexId>> pinched_;  ///< label, further node; sorted
     Carriers source_carriers_;
 
     CellMap map_;
@@ -188,13 +186,13 @@ struct BuiltMesh {
 
 /// Appends the elements that are connected with `start` through faces at its node `n`, in ascending
 /// order. Cost: O(k^2) comparisons for k elements, which are few.
-void collect_star(const Mesh& mesh, NodeId n, ElementId start, std::vector<ElementId>& elements);
+void collect_star(const Mesh& mesh, VertexId n, CellId start, std::vector<CellId>& elements);
 
 /// Appends the elements at the edge from `a` to `b` that are connected with tetrahedron `e` through
 /// faces at the edge. The first one is `e`; the others follow in the order in which a search from
 /// `e` in both directions finds them.
-void collect_edge_ring(const Mesh& mesh, ElementId e, NodeId a, NodeId b,
-                       std::vector<ElementId>& elements);
+void collect_edge_ring(const Mesh& mesh, CellId e, VertexId a, VertexId b,
+                       std::vector<CellId>& elements);
 
 /// Returns the position in face `b` of the node at position 0 of face `a`, if the two faces have
 /// the same nodes in opposite directions; else -1.
@@ -205,7 +203,7 @@ int matching_shift(const Mesh& mesh, FaceId a, FaceId b);
 double rest_area(const Mesh& mesh, FaceId f);
 
 /// Returns the volume of an element at rest, m3.
-double rest_volume(const Mesh& mesh, ElementId e);
+double rest_volume(const Mesh& mesh, CellId e);
 
 /// The connected components of a mesh: sets of elements that are joined through faces. They are
 /// numbered from 0 in the order of their lowest element.
@@ -226,7 +224,7 @@ std::vector<FaceId> boundary_faces(const Mesh& mesh);
 /// @param nodes      if not null, receives the node id of each point
 /// @param elements   if not null, receives the element id of each cell
 MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions,
-                      std::vector<NodeId>* nodes = nullptr,
-                      std::vector<ElementId>* elements = nullptr);
+                      std::vector<VertexId>* nodes = nullptr,
+                      std::vector<CellId>* elements = nullptr);
 
 }  // namespace incise::topology

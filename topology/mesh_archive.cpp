@@ -57,17 +57,17 @@ class MeshArchive {
     }
 
     void require_ids() const {
-        const auto is_node = [&](NodeId n) {
+        const auto is_node = [&](VertexId n) {
             return n.is_valid() && n.index() < mesh_.node_capacity();
         };
-        const auto is_element_or_none = [&](ElementId e) {
+        const auto is_element_or_none = [&](CellId e) {
             return !e.is_valid() || e.index() < mesh_.element_capacity();
         };
         const auto is_face_or_none = [&](FaceId f) {
-            return !f.is_valid() || (is_element_or_none(f.element) && f.face >= 0 &&
-                                     f.face < mesh_.num_faces(f.element));
+            return !f.is_valid() ||
+                   (is_element_or_none(f.cell) && f.face >= 0 && f.face < mesh_.num_faces(f.cell));
         };
-        const auto is_labelled = [&](NodeId n) {
+        const auto is_labelled = [&](VertexId n) {
             return !n.is_valid() || n.index() < mesh_.node_labels_.size();
         };
         require(std::ranges::all_of(mesh_.rest_positions_,
@@ -83,24 +83,24 @@ class MeshArchive {
 
     void restore_map() {
         for (std::size_t i = 0; i < mesh_.element_capacity(); ++i) {
-            const ElementId e(i);
+            const CellId e(i);
             mesh_.map_.add_element(e, mesh_.kind(e), mesh_.corners(e), mesh_.rest_positions_);
             if (!mesh_.is_alive(e)) mesh_.map_.remove_element(e);
         }
-        for (const ElementId e : mesh_.elements())
+        for (const CellId e : mesh_.elements())
             for (int f = 0; f < mesh_.num_faces(e); ++f) {
                 const FaceId face{e, f}, other = mesh_.neighbor(face);
                 if (!other.is_valid()) continue;
-                require(mesh_.is_alive(other.element) && other.element != e &&
-                            mesh_.neighbor(other) == face,
-                        "neighbours do not know each other");
+                require(
+                    mesh_.is_alive(other.cell) && other.cell != e && mesh_.neighbor(other) == face,
+                    "neighbours do not know each other");
                 const int shift = matching_shift(mesh_, face, other);
                 require(shift >= 0, "neighbours disagree on their face");
                 if (face < other) mesh_.map_.glue(face, other, shift);
             }
         // Adding and removing dead elements has changed the darts that CGAL stores for vertices.
-        for (const NodeId n : mesh_.nodes()) {
-            const ElementId incident = mesh_.incident_element(n);
+        for (const VertexId n : mesh_.nodes()) {
+            const CellId incident = mesh_.incident_element(n);
             const int corner = mesh_.is_alive(incident) ? mesh_.corner_of(incident, n) : -1;
             require(corner >= 0, "a node has no element");
             mesh_.map_.set_incident_element(n, incident, corner);

@@ -38,25 +38,25 @@ MeshEdit::~MeshEdit() {
     replay(mesh_, inverse(changes));
     // A node into which others were merged may have a dart in the map that belongs to them again.
     for (const TouchedCorner& touched : touched_) {
-        const NodeId n = touched.node;
+        const VertexId n = touched.node;
         if (n.index() >= node_capacity_before_ || !mesh_.is_alive(n)) continue;
-        const ElementId incident = mesh_.incident_element(n);
+        const CellId incident = mesh_.incident_element(n);
         mesh_.map_.set_incident_element(n, incident, mesh_.corner_of(incident, n));
     }
 }
 
-void MeshEdit::require_alive(ElementId e) const {
+void MeshEdit::require_alive(CellId e) const {
     if (!e.is_valid() || e.index() >= mesh_.element_capacity() || !mesh_.is_alive(e))
         throw InputError("edit: element " + std::to_string(e.value) + " does not exist");
 }
 
-void MeshEdit::require_older(ElementId e, const char* what) const {
+void MeshEdit::require_older(CellId e, const char* what) const {
     if (e.index() >= element_capacity_before_)
         throw InputError("edit: element " + std::to_string(e.value) +
                          " was made in this edit and cannot be " + what + " in it: commit first");
 }
 
-void MeshEdit::save(ElementId e) {
+void MeshEdit::save(CellId e) {
     if (e.index() >= element_capacity_before_ || !is_saved_.insert(e).second) return;
     const auto corners = mesh_.corners(e);
     SavedRow row{e, mesh_.is_alive(e), {}, {}, mesh_.inside_faces_[e.index()]};
@@ -68,55 +68,55 @@ void MeshEdit::save(ElementId e) {
 
 void MeshEdit::touch_face(FaceId f) {
     for (int p = 0; p < mesh_.face_size(f); ++p)
-        touched_.push_back({mesh_.face_corner(f, p), f.element});
+        touched_.push_back({mesh_.face_corner(f, p), f.cell});
 }
 
 void MeshEdit::part(FaceId f) {
     const FaceId other = mesh_.neighbor(f);
-    save(f.element);
-    save(other.element);
+    save(f.cell);
+    save(other.cell);
     touch_face(f);
     touch_face(other);
     mesh_.unglue(f);
 }
 
-void MeshEdit::remove(ElementId e) {
+void MeshEdit::remove(CellId e) {
     require_alive(e);
     require_older(e, "removed");
     save(e);
     for (int f = 0; f < mesh_.num_faces(e); ++f) {
         const FaceId other = mesh_.neighbor({e, f});
         if (!other.is_valid()) continue;
-        save(other.element);
+        save(other.cell);
         touch_face(other);
         mesh_.unglue(other);
     }
-    for (const NodeId n : mesh_.corners(e)) touched_.push_back({n, ElementId()});
+    for (const VertexId n : mesh_.corners(e)) touched_.push_back({n, CellId()});
     mesh_.map_.remove_element(e);
     mesh_.alive_[e.index()] = 0;
     --mesh_.num_elements_;
 }
 
 void MeshEdit::open(FaceId f) {
-    require_alive(f.element);
+    require_alive(f.cell);
     if (!mesh_.neighbor(f).is_valid())
         throw InputError("edit: face " + std::to_string(f.face) + " of element " +
-                         std::to_string(f.element.value) + " is on the boundary already");
+                         std::to_string(f.cell.value) + " is on the boundary already");
     part(f);
 }
 
 void MeshEdit::close(FaceId a, FaceId b) {
-    require_alive(a.element);
-    require_alive(b.element);
-    require_older(a.element, "joined");
-    require_older(b.element, "joined");
+    require_alive(a.cell);
+    require_alive(b.cell);
+    require_older(a.cell, "joined");
+    require_older(b.cell, "joined");
     const auto refuse = [&](const char* why) {
         throw InputError("edit: face " + std::to_string(a.face) + " of element " +
-                         std::to_string(a.element.value) + " and face " + std::to_string(b.face) +
-                         " of element " + std::to_string(b.element.value) +
+                         std::to_string(a.cell.value) + " and face " + std::to_string(b.face) +
+                         " of element " + std::to_string(b.cell.value) +
                          " cannot be joined: " + why);
     };
-    if (a.element == b.element) refuse("they belong to one element");
+    if (a.cell == b.cell) refuse("they belong to one element");
     if (mesh_.neighbor(a).is_valid() || mesh_.neighbor(b).is_valid())
         refuse("one of them is joined already");
     const int size = mesh_.face_size(a);
@@ -134,23 +134,23 @@ void MeshEdit::close(FaceId a, FaceId b) {
     while (shift < size && !fits(shift)) ++shift;
     if (shift == size) refuse("their corners do not lie at the same rest positions");
 
-    save(a.element);
-    save(b.element);
+    save(a.cell);
+    save(b.cell);
     for (int p = 0; p < size; ++p) {
-        const NodeId n = mesh_.face_corner(a, p);
-        const NodeId m = mesh_.face_corner(b, (shift - p + size) % size);
+        const VertexId n = mesh_.face_corner(a, p);
+        const VertexId m = mesh_.face_corner(b, (shift - p + size) % size);
         if (n == m) continue;
         if (n < m)
-            merge(n, m, b.element);
+            merge(n, m, b.cell);
         else
-            merge(m, n, a.element);
+            merge(m, n, a.cell);
     }
     mesh_.glue(a, b, shift);
     touch_face(a);
     touch_face(b);
 }
 
-void MeshEdit::rewire(ElementId e, int corner, NodeId to) {
+void MeshEdit::rewire(CellId e, int corner, VertexId to) {
     save(e);
     mesh_.map_.set_corner(e, corner, to, mesh_.rest_position(to));
     mesh_.corners_[mesh_.corner_begin_[e.index()] + static_cast<std::size_t>(corner)] = to;
@@ -158,9 +158,9 @@ void MeshEdit::rewire(ElementId e, int corner, NodeId to) {
 
 // Collects the elements at the edge in cyclic order. If the ring is not closed, it consists of
 // arcs, which are collected one after the other. Returns false if an element is no tetrahedron.
-bool MeshEdit::collect_ring(ElementId e, NodeId a, NodeId b) {
+bool MeshEdit::collect_ring(CellId e, VertexId a, VertexId b) {
     ring_.clear();
-    const auto enter = [&](ElementId element, int through) {
+    const auto enter = [&](CellId element, int through) {
         RingElement at{element, mesh_.corner_of(element, a), mesh_.corner_of(element, b), -1};
         // The search leaves the element by the face at the edge through which it has not entered.
         for (int f = 0; f < 4; ++f)
@@ -170,19 +170,19 @@ bool MeshEdit::collect_ring(ElementId e, NodeId a, NodeId b) {
     };
     const auto next = [&](const RingElement& at) {
         const FaceId to = mesh_.neighbor({at.element, at.next_face});
-        return to.is_valid() ? enter(to.element, to.face) : RingElement{};
+        return to.is_valid() ? enter(to.cell, to.face) : RingElement{};
     };
-    const auto is_tetrahedron = [&](ElementId element) {
+    const auto is_tetrahedron = [&](CellId element) {
         return mesh_.kind(element) == CellKind::tetrahedron;
     };
-    const auto add_arc = [&](ElementId start) {
+    const auto add_arc = [&](CellId start) {
         // Go to the first element of the arc, or once round a closed ring.
         RingElement first = enter(start, -1);
         for (;;) {
             const FaceId to = mesh_.neighbor({first.element, first.next_face});
-            if (!to.is_valid() || to.element == start) break;
-            if (!is_tetrahedron(to.element)) return false;
-            first = enter(to.element, to.face);
+            if (!to.is_valid() || to.cell == start) break;
+            if (!is_tetrahedron(to.cell)) return false;
+            first = enter(to.cell, to.face);
         }
         // Reverse the direction of the search.
         first = enter(first.element, first.next_face);
@@ -200,7 +200,7 @@ bool MeshEdit::collect_ring(ElementId e, NodeId a, NodeId b) {
     // at one end of the edge.
     star_.clear();
     collect_star(mesh_, a, e, star_);
-    for (const ElementId other : star_) {
+    for (const CellId other : star_) {
         const bool is_known = std::any_of(
             ring_.begin(), ring_.end(), [&](const RingElement& at) { return at.element == other; });
         if (is_known || mesh_.corner_of(other, b) < 0) continue;
@@ -209,9 +209,9 @@ bool MeshEdit::collect_ring(ElementId e, NodeId a, NodeId b) {
     return true;
 }
 
-NodeId MeshEdit::add_node_between(NodeId a, NodeId b, double t) {
-    const NodeId n(mesh_.node_capacity());
-    NodeRecord record{n, (1.0 - t) * mesh_.rest_position(a) + t * mesh_.rest_position(b), {}, 2};
+VertexId MeshEdit::add_node_between(VertexId a, VertexId b, double t) {
+    const VertexId n(mesh_.node_capacity());
+    VertexRecord record{n, (1.0 - t) * mesh_.rest_position(a) + t * mesh_.rest_position(b), {}, 2};
     record.sources[0] = {a, 1.0 - t};
     record.sources[1] = {b, t};
     nodes_added_.push_back(record);
@@ -221,19 +221,19 @@ NodeId MeshEdit::add_node_between(NodeId a, NodeId b, double t) {
     return n;
 }
 
-ElementId MeshEdit::divide(const RingElement& at, NodeId middle) {
-    const ElementId kept = at.element, added(mesh_.element_capacity());
+CellId MeshEdit::divide(const RingElement& at, VertexId middle) {
+    const CellId kept = at.element, added(mesh_.element_capacity());
     const auto corner_a = static_cast<std::size_t>(at.corner_a);
     const int inner_face = face_opposite(at.corner_a), cut_face = face_opposite(at.corner_b);
     const FaceId outer = mesh_.neighbor({kept, inner_face});
     save(kept);
     if (outer.is_valid()) {
-        save(outer.element);
+        save(outer.cell);
         mesh_.unglue({kept, inner_face});
     }
     const auto old = mesh_.corners(kept);
-    std::array<NodeId, 4> corners{old[0], old[1], old[2], old[3]};
-    const NodeId b = corners[static_cast<std::size_t>(at.corner_b)];
+    std::array<VertexId, 4> corners{old[0], old[1], old[2], old[3]};
+    const VertexId b = corners[static_cast<std::size_t>(at.corner_b)];
     corners[corner_a] = middle;
     rewire(kept, at.corner_b, middle);
     mesh_.append_element_row(CellKind::tetrahedron, mesh_.region(kept), corners);
@@ -254,7 +254,7 @@ ElementId MeshEdit::divide(const RingElement& at, NodeId middle) {
     return added;
 }
 
-const MeshEdit::Bisection& MeshEdit::bisect(ElementId e, NodeId a, NodeId b, double t) {
+const MeshEdit::Bisection& MeshEdit::bisect(CellId e, VertexId a, VertexId b, double t) {
     require_alive(e);
     const auto refuse = [&](const std::string& why) {
         throw InputError("edit: the edge between nodes " + std::to_string(a.value) + " and " +
@@ -276,8 +276,8 @@ const MeshEdit::Bisection& MeshEdit::bisect(ElementId e, NodeId a, NodeId b, dou
         if (!other.is_valid()) continue;
         // The neighbour is the next element in the list, except where a ring closes.
         std::size_t next = i + 1;
-        if (next == ring_.size() || ring_[next].element != other.element) next = 0;
-        while (ring_[next].element != other.element) ++next;
+        if (next == ring_.size() || ring_[next].element != other.cell) next = 0;
+        while (ring_[next].element != other.cell) ++next;
         const FaceId one{bisection_.elements[i].added, face.face};
         const FaceId two{bisection_.elements[next].added, other.face};
         mesh_.glue(one, two, matching_shift(mesh_, one, two));
@@ -285,37 +285,37 @@ const MeshEdit::Bisection& MeshEdit::bisect(ElementId e, NodeId a, NodeId b, dou
     return bisection_;
 }
 
-void MeshEdit::merge(NodeId survivor, NodeId absorbed, ElementId at) {
+void MeshEdit::merge(VertexId survivor, VertexId absorbed, CellId at) {
     // The elements of the absorbed node may no longer be connected: search from all that are known.
-    std::vector<ElementId> starts{at};
+    std::vector<CellId> starts{at};
     if (mesh_.is_alive(absorbed)) starts.push_back(mesh_.incident_element(absorbed));
     for (const TouchedCorner& touched : touched_)
         if (touched.node == absorbed) starts.push_back(touched.element);
-    for (const ElementId start : starts) {
+    for (const CellId start : starts) {
         if (!start.is_valid() || !mesh_.is_alive(start)) continue;
         if (mesh_.corner_of(start, absorbed) < 0) continue;
-        std::vector<ElementId> holders;
+        std::vector<CellId> holders;
         collect_star(mesh_, absorbed, start, holders);
-        for (const ElementId e : holders) {
+        for (const CellId e : holders) {
             rewire(e, mesh_.corner_of(e, absorbed), survivor);
             touched_.push_back({survivor, e});
         }
     }
-    touched_.push_back({absorbed, ElementId()});
+    touched_.push_back({absorbed, CellId()});
     merged_.emplace_back(absorbed, survivor);
 }
 
-NodeId MeshEdit::survivor_of(NodeId n) const {
+VertexId MeshEdit::survivor_of(VertexId n) const {
     // A survivor may itself have been absorbed later, always by a node with a lower id.
     for (const auto& [absorbed, survivor] : merged_)
         if (absorbed == n) return survivor_of(survivor);
     return n;
 }
 
-void MeshEdit::split_star(NodeId n, const std::vector<ElementId>& candidates,
-                          std::vector<NodeRecord>& removed) {
-    std::vector<std::vector<ElementId>> parts;
-    for (const ElementId e : candidates) {
+void MeshEdit::split_star(VertexId n, const std::vector<CellId>& candidates,
+                          std::vector<VertexRecord>& removed) {
+    std::vector<std::vector<CellId>> parts;
+    for (const CellId e : candidates) {
         if (!e.is_valid() || !mesh_.is_alive(e) || mesh_.corner_of(e, n) < 0) continue;
         const bool is_known = std::any_of(parts.begin(), parts.end(), [&](const auto& part) {
             return std::binary_search(part.begin(), part.end(), e);
@@ -328,8 +328,8 @@ void MeshEdit::split_star(NodeId n, const std::vector<ElementId>& candidates,
     std::sort(parts.begin(), parts.end());
 
     if (parts.empty()) {
-        NodeRecord record{n, mesh_.rest_position(n), {}, 0};
-        if (const NodeId survivor = survivor_of(n); survivor != n) {
+        VertexRecord record{n, mesh_.rest_position(n), {}, 0};
+        if (const VertexId survivor = survivor_of(n); survivor != n) {
             record.sources[0] = {survivor, 1.0};
             record.num_sources = 1;
         }
@@ -339,29 +339,29 @@ void MeshEdit::split_star(NodeId n, const std::vector<ElementId>& candidates,
         return;
     }
     for (std::size_t p = 0; p < parts.size(); ++p) {
-        NodeId keeper = n;
+        VertexId keeper = n;
         if (p > 0) {
-            keeper = NodeId(mesh_.node_capacity());
-            NodeRecord record{keeper, mesh_.rest_position(n), {}, 1};
+            keeper = VertexId(mesh_.node_capacity());
+            VertexRecord record{keeper, mesh_.rest_position(n), {}, 1};
             record.sources[0] = {n, 1.0};
             nodes_added_.push_back(record);
             mesh_.rest_positions_.push_back(record.rest_position);
             mesh_.incident_elements_.emplace_back();
             ++mesh_.num_nodes_;
-            for (const ElementId e : parts[p]) rewire(e, mesh_.corner_of(e, n), keeper);
+            for (const CellId e : parts[p]) rewire(e, mesh_.corner_of(e, n), keeper);
         }
-        const ElementId incident = parts[p].front();
+        const CellId incident = parts[p].front();
         mesh_.incident_elements_[keeper.index()] = incident;
         mesh_.map_.set_incident_element(keeper, incident, mesh_.corner_of(incident, keeper));
     }
 }
 
-void MeshEdit::divide_nodes(std::vector<NodeRecord>& removed) {
+void MeshEdit::divide_nodes(std::vector<VertexRecord>& removed) {
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-    std::vector<ElementId> candidates;
+    std::vector<CellId> candidates;
     for (std::size_t i = 0; i < touched_.size();) {
-        const NodeId n = touched_[i].node;
+        const VertexId n = touched_[i].node;
         candidates.clear();
         for (; i < touched_.size() && touched_[i].node == n; ++i)
             candidates.push_back(touched_[i].element);
@@ -382,7 +382,7 @@ ChangeSet MeshEdit::differences() const {
     std::sort(rows.begin(), rows.end(),
               [](const SavedRow* a, const SavedRow* b) { return a->element < b->element; });
     for (const SavedRow* row : rows) {
-        const ElementId e = row->element;
+        const CellId e = row->element;
         const bool is_alive = mesh_.is_alive(e);
         const auto corners = mesh_.corners(e);
         const std::span old_corners(row->corners.data(), corners.size());
@@ -405,7 +405,7 @@ ChangeSet MeshEdit::differences() const {
         }
     }
     for (std::size_t i = element_capacity_before_; i < mesh_.element_capacity(); ++i) {
-        const ElementId e(i);
+        const CellId e(i);
         const auto corners = mesh_.corners(e);
         changes.elements_added.push_back({e,
                                           mesh_.kind(e),
@@ -424,7 +424,7 @@ ChangeSet MeshEdit::differences() const {
 
 ChangeSet MeshEdit::commit() {
     assert(is_open_);
-    std::vector<NodeRecord> nodes_removed;
+    std::vector<VertexRecord> nodes_removed;
     divide_nodes(nodes_removed);
     ChangeSet changes = differences();
     is_open_ = false;

@@ -29,7 +29,7 @@ class MeshEdit {
 
     /// Removes a living element. Throws InputError if there is no such element, or if this edit has
     /// added it.
-    void remove(ElementId e);
+    void remove(CellId e);
     /// Separates the two elements at a shared face. Throws InputError if the face is on the
     /// boundary.
     void open(FaceId f);
@@ -42,11 +42,11 @@ class MeshEdit {
     /// the edge and keeps its id; `added` has the second end. Local corner numbers do not change:
     /// in each part the new node replaces the end of the edge that the part does not have.
     struct DividedElement {
-        ElementId kept, added;
+        CellId kept, added;
     };
     /// The result of bisect().
     struct Bisection {
-        NodeId node;
+        VertexId node;
         std::vector<DividedElement> elements;  ///< all elements at the edge
     };
 
@@ -55,7 +55,7 @@ class MeshEdit {
     /// The returned reference is valid until the next call.
     /// Throws InputError if there is no such edge, if `t` is out of range, or if an element at the
     /// edge is no tetrahedron.
-    const Bisection& bisect(ElementId e, NodeId a, NodeId b, double t);
+    const Bisection& bisect(CellId e, VertexId a, VertexId b, double t);
 
     /// Ends the transaction and returns its record. The epoch of the mesh increases by one, unless
     /// nothing changed.
@@ -64,52 +64,53 @@ class MeshEdit {
   private:
     /// One of the elements at an edge, which form a ring.
     struct RingElement {
-        ElementId element;
+        CellId element;
         int corner_a = 0, corner_b = 0;
         int next_face = 0;  ///< the face to the next element of the ring
     };
 
     /// The state of an element before the edit.
     struct SavedRow {
-        ElementId element;
+        CellId element;
         bool was_alive;
-        std::array<NodeId, max_corners> corners;  // only as many as the element has; neighbors too
+        std::array<VertexId, max_corners>
+            corners;  // only as many as the element has; neighbors too
         std::array<FaceId, max_faces> neighbors;
         std::uint8_t inside_faces;
     };
     struct TouchedCorner {
-        NodeId node;
-        ElementId element;  // may have died since; invalid if only the node matters
+        VertexId node;
+        CellId element;  // may have died since; invalid if only the node matters
         auto operator<=>(const TouchedCorner&) const = default;
     };
 
-    void require_alive(ElementId e) const;
-    void save(ElementId e);
+    void require_alive(CellId e) const;
+    void save(CellId e);
     void touch_face(FaceId f);
     void part(FaceId f);
-    void rewire(ElementId e, int corner, NodeId to);
-    bool collect_ring(ElementId e, NodeId a, NodeId b);
-    NodeId add_node_between(NodeId a, NodeId b, double t);
-    ElementId divide(const RingElement& at, NodeId middle);
-    void require_older(ElementId e, const char* what) const;
-    void merge(NodeId survivor, NodeId absorbed, ElementId at);
-    void divide_nodes(std::vector<NodeRecord>& removed);
-    void split_star(NodeId n, const std::vector<ElementId>& candidates,
-                    std::vector<NodeRecord>& removed);
-    NodeId survivor_of(NodeId n) const;
+    void rewire(CellId e, int corner, VertexId to);
+    bool collect_ring(CellId e, VertexId a, VertexId b);
+    VertexId add_node_between(VertexId a, VertexId b, double t);
+    CellId divide(const RingElement& at, VertexId middle);
+    void require_older(CellId e, const char* what) const;
+    void merge(VertexId survivor, VertexId absorbed, CellId at);
+    void divide_nodes(std::vector<VertexRecord>& removed);
+    void split_star(VertexId n, const std::vector<CellId>& candidates,
+                    std::vector<VertexRecord>& removed);
+    VertexId survivor_of(VertexId n) const;
     ChangeSet differences() const;
 
     Mesh& mesh_;
     const std::size_t node_capacity_before_, element_capacity_before_;
     bool is_open_ = true;
     std::vector<SavedRow> saved_;
-    std::unordered_set<ElementId> is_saved_;
+    std::unordered_set<CellId> is_saved_;
     std::vector<TouchedCorner> touched_;
-    std::vector<std::pair<NodeId, NodeId>> merged_;  // absorbed, survivor
-    std::vector<NodeRecord> nodes_added_;
-    std::vector<ElementId> parents_;  // of the added elements, in ascending order
-    std::vector<RingElement> ring_;   // scratch
-    std::vector<ElementId> star_;     // scratch
+    std::vector<std::pair<VertexId, VertexId>> merged_;  // absorbed, survivor
+    std::vector<VertexRecord> nodes_added_;
+    std::vector<CellId> parents_;    // of the added elements, in ascending order
+    std::vector<RingElement> ring_;  // scratch
+    std::vector<CellId> star_;       // scratch
     Bisection bisection_;
 };
 

@@ -86,7 +86,7 @@ class MeshImport {
         cell_of_element_ = order_of_cells();
         element_of_cell_.resize(cell_of_element_.size());
         for (std::size_t e = 0; e < cell_of_element_.size(); ++e)
-            element_of_cell_[cell_of_element_[e]] = ElementId(e);
+            element_of_cell_[cell_of_element_[e]] = CellId(e);
         mesh_.element_labels_.assign(cell_of_element_.begin(), cell_of_element_.end());
     }
 
@@ -96,7 +96,7 @@ class MeshImport {
     void order_nodes() {
         mesh_.label_nodes_.resize(data_.points.size());
         const auto number = [&](std::size_t point) {
-            mesh_.label_nodes_[point] = NodeId(mesh_.node_labels_.size());
+            mesh_.label_nodes_[point] = VertexId(mesh_.node_labels_.size());
             mesh_.node_labels_.push_back(static_cast<std::int64_t>(point));
             mesh_.rest_positions_.push_back(data_.points[point]);
         };
@@ -116,7 +116,7 @@ class MeshImport {
     }
 
     void add_rows() {
-        std::vector<NodeId> corners;
+        std::vector<VertexId> corners;
         for (const std::size_t c : cell_of_element_) {
             corners.clear();
             for (const std::int64_t p : data_.cell(c))
@@ -143,18 +143,18 @@ class MeshImport {
         // Slots are in ascending order of elements. The set of the first slot of a node keeps the
         // node.
         std::vector<std::size_t> first_set(mesh_.rest_positions_.size(), mesh_.corners_.size());
-        std::vector<NodeId> node_of_set(mesh_.corners_.size());
+        std::vector<VertexId> node_of_set(mesh_.corners_.size());
         std::vector<bool> is_pinched(mesh_.rest_positions_.size(), false);
         std::size_t num_pinched = 0;
         for (std::size_t slot = 0; slot < mesh_.corners_.size(); ++slot) {
-            const NodeId n = mesh_.corners_[slot];
+            const VertexId n = mesh_.corners_[slot];
             const std::size_t set = sets.find(slot);
             if (!node_of_set[set].is_valid()) {
                 if (first_set[n.index()] == mesh_.corners_.size()) {
                     first_set[n.index()] = set;
                     node_of_set[set] = n;
                 } else {
-                    node_of_set[set] = NodeId(mesh_.rest_positions_.size());
+                    node_of_set[set] = VertexId(mesh_.rest_positions_.size());
                     mesh_.rest_positions_.push_back(mesh_.rest_positions_[n.index()]);
                     mesh_.pinched_.emplace_back(mesh_.node_labels_[n.index()], node_of_set[set]);
                     ++mesh_.num_nodes_;
@@ -177,13 +177,13 @@ class MeshImport {
 
         mesh_.incident_elements_.resize(mesh_.rest_positions_.size());
         for (std::size_t i = mesh_.num_elements(); i-- > 0;)
-            for (const NodeId n : mesh_.corners(ElementId(i)))
-                mesh_.incident_elements_[n.index()] = ElementId(i);
+            for (const VertexId n : mesh_.corners(CellId(i)))
+                mesh_.incident_elements_[n.index()] = CellId(i);
     }
 
     void build_map() {
         for (std::size_t i = 0; i < mesh_.num_elements(); ++i) {
-            const ElementId e(i);
+            const CellId e(i);
             mesh_.map_.add_element(e, mesh_.kind(e), mesh_.corners(e), mesh_.rest_positions());
         }
         for (const SharedFace& shared : check_.shared_faces) {
@@ -204,7 +204,7 @@ class MeshImport {
     MeshCheck check_;
     Mesh mesh_;
     std::vector<std::size_t> cell_of_element_;
-    std::vector<ElementId> element_of_cell_;
+    std::vector<CellId> element_of_cell_;
 };
 
 BuiltMesh Mesh::build(const MeshData& data, const WeldAdvice& advice) {

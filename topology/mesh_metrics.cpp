@@ -146,9 +146,9 @@ double surface_area(const MeshData& data, const std::vector<SharedFace>& shared_
 double mean_element_length(const Mesh& mesh) {
     double volume = 0.0, num_sixths = 0.0;
     std::vector<Vec3> x;
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         x.clear();
-        for (const NodeId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
+        for (const VertexId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
         volume += signed_volume(mesh.kind(e), x);
         num_sixths += mesh.kind(e) == CellKind::tetrahedron ? 1.0 : 6.0;
     }

@@ -14,12 +14,12 @@ class MeshReplay {
 
     void run() {
         for (const FacePair& pair : changes_.faces_opened) mesh_.unglue(pair.a);
-        for (const ElementRecord& record : changes_.elements_removed) {
+        for (const CellRecord& record : changes_.elements_removed) {
             mesh_.map_.remove_element(record.id);
             mesh_.alive_[record.id.index()] = 0;
             --mesh_.num_elements_;
         }
-        for (const NodeRecord& record : changes_.nodes_added) {
+        for (const VertexRecord& record : changes_.nodes_added) {
             if (record.id.index() == mesh_.node_capacity()) {
                 mesh_.rest_positions_.push_back(record.rest_position);
                 mesh_.incident_elements_.emplace_back();
@@ -27,8 +27,8 @@ class MeshReplay {
             mesh_.rest_positions_[record.id.index()] = record.rest_position;
             ++mesh_.num_nodes_;
         }
-        for (const ElementRecord& record : changes_.elements_added) add(record);
-        for (const Rewiring& rewiring : changes_.rewired) {
+        for (const CellRecord& record : changes_.elements_added) add(record);
+        for (const CellRewiring& rewiring : changes_.rewired) {
             mesh_.map_.set_corner(rewiring.element, rewiring.corner, rewiring.to,
                                   mesh_.rest_position(rewiring.to));
             corner(rewiring.element, rewiring.corner) = rewiring.to;
@@ -38,8 +38,8 @@ class MeshReplay {
         // They do not follow from the faces that were joined: a face can have been made and opened
         // in the same edit, and the inverse of an edit takes marks away.
         for (const InsideChange& change : changes_.inside_changes)
-            mesh_.inside_faces_[change.element.index()] = change.to;
-        for (const NodeRecord& record : changes_.nodes_removed) {
+            mesh_.inside_faces_[change.cell.index()] = change.to;
+        for (const VertexRecord& record : changes_.nodes_removed) {
             mesh_.incident_elements_[record.id.index()] = {};
             --mesh_.num_nodes_;
         }
@@ -49,12 +49,12 @@ class MeshReplay {
     }
 
   private:
-    NodeId& corner(ElementId e, int k) {
+    VertexId& corner(CellId e, int k) {
         return mesh_.corners_[mesh_.corner_begin_[e.index()] + static_cast<std::size_t>(k)];
     }
 
-    void add(const ElementRecord& record) {
-        const ElementId e = record.id;
+    void add(const CellRecord& record) {
+        const CellId e = record.id;
         if (e.index() == mesh_.element_capacity()) {
             mesh_.append_element_row(record.kind, record.region, record.corners);
         } else {
@@ -67,20 +67,20 @@ class MeshReplay {
     }
 
     void set_incident_elements() {
-        std::vector<std::pair<NodeId, ElementId>> touched;
-        const auto touch = [&](ElementId e) {
+        std::vector<std::pair<VertexId, CellId>> touched;
+        const auto touch = [&](CellId e) {
             if (mesh_.is_alive(e))
-                for (const NodeId n : mesh_.corners(e)) touched.emplace_back(n, e);
+                for (const VertexId n : mesh_.corners(e)) touched.emplace_back(n, e);
         };
-        for (const ElementRecord& record : changes_.elements_added) touch(record.id);
-        for (const Rewiring& rewiring : changes_.rewired) touch(rewiring.element);
+        for (const CellRecord& record : changes_.elements_added) touch(record.id);
+        for (const CellRewiring& rewiring : changes_.rewired) touch(rewiring.element);
         for (const auto* pairs : {&changes_.faces_opened, &changes_.faces_closed})
             for (const FacePair& pair : *pairs) {
-                touch(pair.a.element);
-                touch(pair.b.element);
+                touch(pair.a.cell);
+                touch(pair.b.cell);
             }
         std::sort(touched.begin(), touched.end());
-        std::vector<ElementId> star;
+        std::vector<CellId> star;
         for (std::size_t i = 0; i < touched.size(); ++i) {
             const auto [n, e] = touched[i];
             if (i > 0 && touched[i - 1].first == n) continue;

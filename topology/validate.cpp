@@ -20,9 +20,9 @@ std::vector<std::string> validate(const Mesh& mesh) {
     if (!mesh.map().is_valid()) report("CGAL calls the map invalid");
 
     std::size_t num_elements = 0;
-    std::vector<std::vector<ElementId>> holders(mesh.node_capacity());
+    std::vector<std::vector<CellId>> holders(mesh.node_capacity());
     std::vector<Vec3> x;
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         ++num_elements;
         x.clear();
         const auto corners = mesh.corners(e);
@@ -41,22 +41,21 @@ std::vector<std::string> validate(const Mesh& mesh) {
             if (!other.is_valid()) continue;
             if (!mesh.was_inside(face))
                 report("element ", e.value, " has a joined face that was never inside");
-            if (!mesh.is_alive(other.element))
-                report("element ", e.value, " has the dead neighbour ", other.element.value);
+            if (!mesh.is_alive(other.cell))
+                report("element ", e.value, " has the dead neighbour ", other.cell.value);
             else if (mesh.neighbor(other) != face)
-                report("element ", e.value, " is unknown to its neighbour ", other.element.value);
+                report("element ", e.value, " is unknown to its neighbour ", other.cell.value);
             else if (matching_shift(mesh, face, other) < 0)
-                report("elements ", e.value, " and ", other.element.value,
-                       " disagree on their face");
+                report("elements ", e.value, " and ", other.cell.value, " disagree on their face");
         }
     }
     if (num_elements != mesh.num_elements())
         report("there are ", num_elements, " elements, counted as ", mesh.num_elements());
 
     std::size_t num_nodes = 0;
-    std::vector<ElementId> star;
+    std::vector<CellId> star;
     for (std::size_t i = 0; i < mesh.node_capacity(); ++i) {
-        const NodeId n(i);
+        const VertexId n(i);
         if (!mesh.is_alive(n)) {
             if (!holders[i].empty()) report("the dead node ", i, " has elements");
             continue;
@@ -82,7 +81,7 @@ class FragmentCheck {
         : fragments_(fragments), mesh_(mesh) {}
 
     std::vector<std::string> run() {
-        for (const ElementId cell : mesh_.elements()) check_cell(cell);
+        for (const CellId cell : mesh_.elements()) check_cell(cell);
         if (!found_.empty()) return found_;
         std::size_t num_elements = 0;
         double volume = 0.0, whole = 0.0;
@@ -93,7 +92,7 @@ class FragmentCheck {
             check_fragment(e);
             for (const NodeId n : fragments_.corners(e)) is_used[n.index()] = true;
         }
-        for (const ElementId cell : mesh_.elements()) {
+        for (const CellId cell : mesh_.elements()) {
             whole += rest_volume(mesh_, cell);
             for (int f = 0; f < mesh_.num_faces(cell); ++f) check_face({cell, f});
         }
@@ -126,19 +125,19 @@ class FragmentCheck {
         for (const ElementId e : fragments_.elements())
             for (const NodeId n : fragments_.corners(e))
                 connected.join(fragments_.corners(e)[0].value, n.value);
-        const auto root = [&](ElementId cell) {
+        const auto root = [&](CellId cell) {
             return connected.find(fragments_.corners(fragments_.fragment_of_cell(cell))[0].value);
         };
-        for (const ElementId cell : mesh_.elements())
+        for (const CellId cell : mesh_.elements())
             for (int f = 0; f < mesh_.num_faces(cell); ++f) {
-                const ElementId other = mesh_.neighbor({cell, f}).element;
+                const CellId other = mesh_.neighbor({cell, f}).cell;
                 if (other.is_valid() && cell < other && root(cell) != root(other))
                     report("elements ", cell.value, " and ", other.value,
                            " hang together, but their fragments do not");
             }
     }
 
-    void check_cell(ElementId cell) {
+    void check_cell(CellId cell) {
         const ElementId e = fragments_.fragment_of_cell(cell);
         if (!e.is_valid() || e.index() >= fragments_.element_capacity() || !fragments_.is_alive(e))
             report("element ", cell.value, " is in no living fragment");
@@ -154,7 +153,7 @@ class FragmentCheck {
         if (!(fragments_.share(e) > 0.0 && std::isfinite(fragments_.share(e))))
             report("fragment ", e.value, " has the share ", fragments_.share(e));
         if (fragments_.cells_of(e).empty()) report("fragment ", e.value, " has no element");
-        for (const ElementId cell : fragments_.cells_of(e))
+        for (const CellId cell : fragments_.cells_of(e))
             if (!mesh_.is_alive(cell) || fragments_.fragment_of_cell(cell) != e)
                 report("fragment ", e.value, " has element ", cell.value, ", which is not its own");
         const auto corners = fragments_.corners(e);
@@ -165,18 +164,18 @@ class FragmentCheck {
     }
 
     void check_face(FaceId face) {
-        const ElementId other = mesh_.neighbor(face).element;
-        if (!other.is_valid() || face.element > other) return;
-        const ElementId a = fragments_.fragment_of_cell(face.element),
+        const CellId other = mesh_.neighbor(face).cell;
+        if (!other.is_valid() || face.cell > other) return;
+        const ElementId a = fragments_.fragment_of_cell(face.cell),
                         b = fragments_.fragment_of_cell(other);
-        if (fragments_.carrier_of_cell(face.element) == fragments_.carrier_of_cell(other)) {
+        if (fragments_.carrier_of_cell(face.cell) == fragments_.carrier_of_cell(other)) {
             if (a != b ||
-                fragments_.is_carried_around(face.element) != fragments_.is_carried_around(other))
-                report("elements ", face.element.value, " and ", other.value,
+                fragments_.is_carried_around(face.cell) != fragments_.is_carried_around(other))
+                report("elements ", face.cell.value, " and ", other.value,
                        " hang together in different fragments");
             return;
         }
-        if (!fragments_.is_own(face.element) || !fragments_.is_own(other)) return;
+        if (!fragments_.is_own(face.cell) || !fragments_.is_own(other)) return;
         std::size_t num_shared = 0, num_common = 0;
         for (const NodeId m : fragments_.corners(a))
             for (const NodeId n : fragments_.corners(b)) {

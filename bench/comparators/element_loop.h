@@ -29,7 +29,7 @@ using Nodes = std::array<std::uint32_t, 4>;
 /// @pre all elements are tetrahedra
 inline std::vector<Nodes> tetrahedra_of(const topology::Mesh& mesh) {
     std::vector<Nodes> tetrahedra;
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         Nodes nodes;
         for (std::size_t k = 0; k < 4; ++k)
             nodes[k] = static_cast<std::uint32_t>(mesh.corners(e)[k].index());

@@ -39,7 +39,7 @@ NodesOnSurface::NodesOnSurface(const CutSurface& surface, const TissueMotion& ti
                                std::span<const EdgeList::Entry> edges, double rounding) {
     if (!surface.has_creases()) return;
     struct End {
-        NodeId node;
+        VertexId node;
         double length, length_at_rest;
     };
     std::vector<End> ends;
@@ -48,9 +48,9 @@ NodesOnSurface::NodesOnSurface(const CutSurface& surface, const TissueMotion& ti
         const auto length = [&](auto position) {
             return (position(edge.b) - position(edge.a)).norm();
         };
-        const double now = length([&](NodeId n) { return tissue.after[n.index()]; }),
-                     at_rest = length([&](NodeId n) { return tissue.mesh.rest_position(n); });
-        for (const NodeId n : {edge.a, edge.b}) ends.push_back({n, now, at_rest});
+        const double now = length([&](VertexId n) { return tissue.after[n.index()]; }),
+                     at_rest = length([&](VertexId n) { return tissue.mesh.rest_position(n); });
+        for (const VertexId n : {edge.a, edge.b}) ends.push_back({n, now, at_rest});
     }
     std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.node < b.node; });
 
@@ -66,14 +66,14 @@ NodesOnSurface::NodesOnSurface(const CutSurface& surface, const TissueMotion& ti
     }
 }
 
-bool NodesOnSurface::contains(NodeId n) const {
+bool NodesOnSurface::contains(VertexId n) const {
     const auto place = std::ranges::lower_bound(nodes_, n, {}, &NodeOnSurface::node);
     return place != nodes_.end() && place->node == n;
 }
 
-bool NodesOnSurface::have_face_of(const topology::Mesh& mesh, ElementId e) const {
+bool NodesOnSurface::have_face_of(const topology::Mesh& mesh, CellId e) const {
     return mesh.kind(e) == topology::CellKind::tetrahedron &&
-           std::ranges::count_if(mesh.corners(e), [&](NodeId n) { return contains(n); }) >= 3;
+           std::ranges::count_if(mesh.corners(e), [&](VertexId n) { return contains(n); }) >= 3;
 }
 
 }  // namespace incise::cutting

@@ -30,7 +30,7 @@ bool is_crossed_from_middle(const CutSurface& surface, const std::array<MovingPo
 
 /// A node that lies on a surface with creases to rounding, and not on its boundary.
 struct NodeOnSurface {
-    NodeId node;
+    VertexId node;
     Vec3 normal;               ///< of the surface there, of unit length
     double local_edge_length;  ///< of its longest edge among those given, m at rest
 };
@@ -51,9 +51,9 @@ class NodesOnSurface {
                    std::span<const EdgeList::Entry> edges, double rounding);
 
     bool is_empty() const { return nodes_.empty(); }
-    bool contains(NodeId n) const;
+    bool contains(VertexId n) const;
     /// True if the element is a tetrahedron and one of its faces has all its nodes on the surface.
-    bool have_face_of(const topology::Mesh& mesh, ElementId e) const;
+    bool have_face_of(const topology::Mesh& mesh, CellId e) const;
 
     auto begin() const { return nodes_.begin(); }  // in ascending order
     auto end() const { return nodes_.end(); }

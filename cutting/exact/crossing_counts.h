@@ -35,12 +35,12 @@ namespace incise::cutting {
 ///                        surface; called only if the boundary of the surface is in the face of
 ///                        ring[i]
 template <class HasBoundary, class IsPassed>
-void place_on_side(CutFront& front, NodeId a, NodeId b, NodeId middle,
-                   const std::vector<NodeId>& ring, HasBoundary has_boundary,
+void place_on_side(CutFront& front, VertexId a, VertexId b, VertexId middle,
+                   const std::vector<VertexId>& ring, HasBoundary has_boundary,
                    IsPassed is_passed_to_b) {
     const bool is_crossed = front.is_crossed(a, b);
     for (std::size_t i = 0; i < ring.size(); ++i) {
-        const NodeId n = ring[i];
+        const VertexId n = ring[i];
         const bool at_a = front.is_crossed(a, n), at_b = front.is_crossed(b, n);
         bool is_crossed_to_n = at_b;
         if (const std::optional<bool> boundary = has_boundary(middle, b, n))
@@ -64,8 +64,8 @@ void place_on_side(CutFront& front, NodeId a, NodeId b, NodeId middle,
 /// @param snap_history       gives the middle its rank
 /// @param point              (node): its MovingPoint
 template <class PointOf>
-void position_of_suspended(const SuspendedCut& blade, Edge edge, NodeId middle,
-                           const std::vector<NodeId>& ring, double local_edge_length,
+void position_of_suspended(const SuspendedCut& blade, Edge edge, VertexId middle,
+                           const std::vector<VertexId>& ring, double local_edge_length,
                            SnapHistory& snap_history, PointOf point) {
     CutFront& front = blade.front;
     if (front.is_on(edge.a) && front.is_on(edge.b))
@@ -75,13 +75,13 @@ void position_of_suspended(const SuspendedCut& blade, Edge edge, NodeId middle,
         std::swap(edge.a, edge.b);
     place_on_side(
         front, edge.a, edge.b, middle, ring,
-        [&](NodeId p, NodeId q, NodeId r) {
+        [&](VertexId p, VertexId q, VertexId r) {
             return blade.is_inside({point(p), point(q), point(r)});
         },
         [](std::size_t) { return false; });
     // The suspended cut ends beyond the middle, and passes through an edge that it would have
     // divided.
-    const bool is_passed = std::any_of(ring.begin(), ring.end(), [&](NodeId n) {
+    const bool is_passed = std::any_of(ring.begin(), ring.end(), [&](VertexId n) {
         return !front.is_on(n) && front.is_crossed(middle, n);
     });
     if (is_passed || (!front.is_on(edge.a) && front.is_crossed(middle, edge.a)))

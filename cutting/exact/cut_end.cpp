@@ -28,11 +28,11 @@ constexpr double room_ahead = 1e-3;
 /// Returns the elements of the same carrier that hang together with an element inside it, this one
 /// first.
 template <class CarrierOf>
-std::vector<ElementId> part_of_carrier(const Mesh& mesh, ElementId e, CarrierOf carrier_of) {
-    std::vector<ElementId> part{e};
+std::vector<CellId> part_of_carrier(const Mesh& mesh, CellId e, CarrierOf carrier_of) {
+    std::vector<CellId> part{e};
     for (std::size_t next = 0; next < part.size(); ++next)
         for (int f = 0; f < mesh.num_faces(part[next]); ++f) {
-            const ElementId other = mesh.neighbor({part[next], f}).element;
+            const CellId other = mesh.neighbor({part[next], f}).cell;
             if (other.is_valid() && carrier_of(other) == carrier_of(e) &&
                 std::ranges::find(part, other) == part.end())
                 part.push_back(other);
@@ -41,14 +41,14 @@ std::vector<ElementId> part_of_carrier(const Mesh& mesh, ElementId e, CarrierOf 
 }
 
 /// Returns the area of one side of the faces inside a part of a carrier that are open, at rest, m2.
-double opened_area(const Mesh& mesh, std::span<const ElementId> part) {
+double opened_area(const Mesh& mesh, std::span<const CellId> part) {
     using Triangle = std::array<Vec3, 3>;
     std::vector<Triangle> open;  // with its corners in a fixed order
     double area = 0.0;
     const auto is_before = [](const Vec3& a, const Vec3& b) {
         return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
     };
-    for (const ElementId e : part)
+    for (const CellId e : part)
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             if (mesh.neighbor({e, f}).is_valid()) continue;
             Triangle x;
@@ -88,13 +88,13 @@ std::optional<EdgeIntersection> CutEnd::intersection(const Edge& edge) const {
 std::vector<CutEnd::CrossedEdge> CutEnd::crossed_edges(std::span<const FaceId> faces,
                                                        double share) {
     std::vector<CrossedEdge> crossed;
-    std::set<std::pair<NodeId, NodeId>> known;
+    std::set<std::pair<VertexId, VertexId>> known;
     for (const FaceId f : faces)
         for (int p = 0; p < 3; ++p) {
             const Edge edge =
                 edge_between(mesh_.face_corner(f, p), mesh_.face_corner(f, (p + 1) % 3));
             if (!known.insert({edge.a, edge.b}).second) continue;
-            if (const auto there = intersection(edge)) crossed.push_back({edge, f.element, *there});
+            if (const auto there = intersection(edge)) crossed.push_back({edge, f.cell, *there});
         }
     for (const auto& [edge, element, intersection] : crossed)
         if (std::min(intersection.place, 1.0 - intersection.place) < share)
@@ -107,7 +107,7 @@ bool CutEnd::is_behind(FaceId f) const {
     int num_at = 0;
     double sum = 0.0;
     for (int p = 0; p < 3; ++p) {
-        const NodeId n = mesh_.face_corner(f, p);
+        const VertexId n = mesh_.face_corner(f, p);
         const double ahead = distance_ahead(n);
         sum += ahead;
         if (is_at(n))
@@ -120,24 +120,23 @@ bool CutEnd::is_behind(FaceId f) const {
 
 /// True if a face is ahead of the edge, at least in part, and inside a carrier.
 bool CutEnd::is_ahead_inside(FaceId f) const {
-    return !is_behind(f) && carrier_of(f.element) == carrier_of(mesh_.neighbor(f).element);
+    return !is_behind(f) && carrier_of(f.cell) == carrier_of(mesh_.neighbor(f).cell);
 }
 
 std::vector<FaceId> CutEnd::faces_to_open(std::span<const FaceId> faces) const {
     struct Section {
         double behind, ahead;  // area on either side of the edge, at rest, m2
     };
-    std::vector<Section> sections;                          // of parts of carriers with the edge
-    std::unordered_map<ElementId, std::size_t> section_of;  // by element of such a part
+    std::vector<Section> sections;                       // of parts of carriers with the edge
+    std::unordered_map<CellId, std::size_t> section_of;  // by element of such a part
     for (const FaceId f : faces) {
-        if (section_of.contains(f.element) || !is_ahead_inside(f)) continue;
-        const auto part =
-            part_of_carrier(mesh_, f.element, [&](ElementId e) { return carrier_of(e); });
-        for (const ElementId e : part) section_of[e] = sections.size();
+        if (section_of.contains(f.cell) || !is_ahead_inside(f)) continue;
+        const auto part = part_of_carrier(mesh_, f.cell, [&](CellId e) { return carrier_of(e); });
+        for (const CellId e : part) section_of[e] = sections.size();
         sections.push_back({opened_area(mesh_, part), 0.0});
     }
     const auto section_with = [&](FaceId f) -> Section* {
-        const auto a = section_of.find(f.element), b = section_of.find(mesh_.neighbor(f).element);
+        const auto a = section_of.find(f.cell), b = section_of.find(mesh_.neighbor(f).cell);
         const bool is_inside =
             a != section_of.end() && b != section_of.end() && a->second == b->second;
         return is_inside ? &sections[a->second] : nullptr;
@@ -157,14 +156,14 @@ std::vector<FaceId> CutEnd::faces_to_open(std::span<const FaceId> faces) const {
 BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const CutFront& front,
                        const PositionOf& position) {
     // Sorted, so that the sums do not depend on the history of the front.
-    std::vector<NodeId> nodes;
-    front.for_each([&](NodeId n) {
+    std::vector<VertexId> nodes;
+    front.for_each([&](VertexId n) {
         if (mesh.is_alive(n)) nodes.push_back(n);
     });
     std::sort(nodes.begin(), nodes.end());
     Vec3 from_cut = Vec3::Zero();
     double share_behind = 0.0, count = 0.0;
-    for (const NodeId n : nodes) {
+    for (const VertexId n : nodes) {
         const Vec3 away = blade.away_from_edge(position(n));
         const double distance = away.norm();
         if (!(distance > 0.0 && distance < size_of_neighbourhood * front.local_edge_length(n)))
@@ -180,12 +179,12 @@ BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const 
 double exit_distance(const TissueMotion& tissue, const topology::FragmentMesh& fragments,
                      const BladeEnd& blade) {
     const Mesh& mesh = tissue.mesh;
-    const auto carrier_of = [&](ElementId e) { return fragments.carrier_of_cell(e); };
+    const auto carrier_of = [&](CellId e) { return fragments.carrier_of_cell(e); };
     const SweptEdge edge(blade.edge(), blade.edge());
     double farthest = 0.0;
     tissue.for_each_near(
         [&](const Box& box) { return edge.may_meet(box); },
-        [&](ElementId e) {
+        [&](CellId e) {
             if (mesh.kind(e) != topology::CellKind::tetrahedron) return;
             bool has_edge = false;
             for (int f = 0; f < 4 && !has_edge; ++f) {
@@ -199,8 +198,8 @@ double exit_distance(const TissueMotion& tissue, const topology::FragmentMesh& f
             if (!has_edge) return;
             // The edge may be in the hindmost face of the element, or in the foremost.
             const double more = room_ahead * tissue.box(e).diagonal().norm();
-            for (const ElementId other : part_of_carrier(mesh, e, carrier_of))
-                for (const NodeId n : mesh.corners(other))
+            for (const CellId other : part_of_carrier(mesh, e, carrier_of))
+                for (const VertexId n : mesh.corners(other))
                     farthest = std::max(
                         farthest,
                         more + std::max(0.0, blade.distance_ahead(tissue.after[n.index()])));

@@ -44,7 +44,7 @@ class CutEnd {
     /// An edge of a face with one end behind the blade's edge and the other ahead of it.
     struct CrossedEdge {
         Edge edge;
-        ElementId element;              ///< one of those that have the edge
+        CellId element;                 ///< one of those that have the edge
         EdgeIntersection intersection;  ///< with the blade's edge
     };
     /// Returns the edges that the blade's edge crosses, each once. Near ends of these edges count
@@ -54,8 +54,8 @@ class CutEnd {
     std::vector<CrossedEdge> crossed_edges(std::span<const FaceId> faces, double share);
 
     /// Makes the node count as at the blade's edge.
-    void put_at(NodeId n) { nodes_.insert(n); }
-    bool is_at(NodeId n) const { return nodes_.contains(n); }
+    void put_at(VertexId n) { nodes_.insert(n); }
+    bool is_at(VertexId n) const { return nodes_.contains(n); }
 
     /// Returns which faces on the cut and on its continuation open, in their order.
     /// @param faces  between the two sides, joined
@@ -65,19 +65,19 @@ class CutEnd {
   private:
     bool is_behind(FaceId f) const;
     bool is_ahead_inside(FaceId f) const;
-    ElementId carrier_of(ElementId e) const {
+    CarrierId carrier_of(CellId e) const {
         const auto known = new_carriers_.find(e);
         return known != new_carriers_.end() ? known->second : fragments_.carrier_of_cell(e);
     }
     std::optional<EdgeIntersection> intersection(const Edge& edge) const;
-    double distance_ahead(NodeId n) const { return blade_.distance_ahead(position_(n)); }
+    double distance_ahead(VertexId n) const { return blade_.distance_ahead(position_(n)); }
 
     const topology::Mesh& mesh_;
     const topology::FragmentMesh& fragments_;
     const BladeEnd& blade_;
     PositionOf position_;
-    std::unordered_map<ElementId, ElementId> new_carriers_;  // of elements that the edit has made
-    std::unordered_set<NodeId> nodes_;                       // that count as at the blade's edge
+    std::unordered_map<CellId, CarrierId> new_carriers_;  // of elements that the edit has made
+    std::unordered_set<VertexId> nodes_;                  // that count as at the blade's edge
 };
 
 /// Returns the same blade if its cut is behind it, else one that goes on away from its cut. A blade

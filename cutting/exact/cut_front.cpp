@@ -9,22 +9,22 @@ namespace incise::cutting {
 
 using topology::Mesh;
 
-void CutFront::put_on(NodeId n, bool is_exact, double local_edge_length, std::uint64_t rank) {
+void CutFront::put_on(VertexId n, bool is_exact, double local_edge_length, std::uint64_t rank) {
     const auto [place, is_new] = nodes_.try_emplace(n, Node{is_exact, local_edge_length, rank, n});
     place->second.local_edge_length = std::max(place->second.local_edge_length, local_edge_length);
     num_new_ += is_new;
     has_changed_ = true;
 }
 
-bool CutFront::is_crossed(NodeId a, NodeId b) const {
+bool CutFront::is_crossed(VertexId a, VertexId b) const {
     const auto place = crossed_.find(a);
     return place != crossed_.end() &&
            std::find(place->second.begin(), place->second.end(), b) != place->second.end();
 }
 
-void CutFront::toggle(NodeId a, NodeId b) {
+void CutFront::toggle(VertexId a, VertexId b) {
     has_changed_ = true;
-    const auto toggle_from = [&](NodeId from, NodeId to) {
+    const auto toggle_from = [&](VertexId from, VertexId to) {
         auto& others = crossed_[from];
         const auto place = std::find(others.begin(), others.end(), to);
         if (place == others.end()) {
@@ -38,14 +38,14 @@ void CutFront::toggle(NodeId a, NodeId b) {
     toggle_from(b, a);
 }
 
-std::optional<CutFront::Place> CutFront::place_of(ElementId e,
-                                                  std::span<const NodeId, 4> corners) const {
-    for (const NodeId n : corners)
+std::optional<CutFront::Place> CutFront::place_of(CellId e,
+                                                  std::span<const VertexId, 4> corners) const {
+    for (const VertexId n : corners)
         if (!is_on(n)) return Place{n};
     // Until this corner came to the cut, it gave the side of the element. So the element keeps its
     // side, and its faces that opened in earlier steps are those that a single step would open.
-    NodeId last;
-    for (const NodeId n : corners)
+    VertexId last;
+    for (const VertexId n : corners)
         if (is_near(n) && (!last.is_valid() || rank(n) > rank(last))) last = n;
     if (last.is_valid()) return Place{last};
     const auto place = places_.find(e);
@@ -54,19 +54,19 @@ std::optional<CutFront::Place> CutFront::place_of(ElementId e,
     return Place{corners[static_cast<std::size_t>(corner)], is_crossed};
 }
 
-void CutFront::place_halves(const Mesh& mesh, NodeId a, NodeId b, NodeId middle,
+void CutFront::place_halves(const Mesh& mesh, VertexId a, VertexId b, VertexId middle,
                             std::span<const topology::MeshEdit::DividedElement> elements) {
     for (const auto& [kept, added] : elements) {
-        std::array<NodeId, 4> whole;
+        std::array<VertexId, 4> whole;
         std::ranges::replace_copy(mesh.corners(kept), whole.begin(), middle, b);
         const std::optional<Place> place = place_of(kept, whole);
         places_.erase(kept);
         if (!place) continue;
         for (const auto& [half, lost] : {std::pair(kept, b), std::pair(added, a)}) {
             const auto corners = mesh.corners(half);
-            if (!std::ranges::all_of(corners, [&](NodeId n) { return is_on(n); })) continue;
+            if (!std::ranges::all_of(corners, [&](VertexId n) { return is_on(n); })) continue;
             const bool is_beyond = place->corner == lost;
-            const NodeId corner = is_beyond ? middle : place->corner;
+            const VertexId corner = is_beyond ? middle : place->corner;
             places_[half] = {
                 mesh.corner_of(half, corner),
                 is_beyond ? place->is_crossed == is_crossed(lost, middle) : place->is_crossed};
@@ -75,13 +75,13 @@ void CutFront::place_halves(const Mesh& mesh, NodeId a, NodeId b, NodeId middle,
 }
 
 bool CutFront::is_on(const topology::Mesh& mesh) const {
-    std::unordered_set<NodeId> followers;
+    std::unordered_set<VertexId> followers;
     const auto is_sound = [&](const auto& node) {
-        const NodeId n = node.first, twin = node.second.next_twin;
+        const VertexId n = node.first, twin = node.second.next_twin;
         return n.is_valid() && n.index() < mesh.node_capacity() && is_on(twin) &&
                followers.insert(twin).second;
     };
-    const auto is_element = [&](ElementId e) {
+    const auto is_element = [&](CellId e) {
         return e.is_valid() && e.index() < mesh.element_capacity();
     };
     const auto is_place = [&](const auto& place) {
@@ -95,9 +95,9 @@ bool CutFront::is_on(const topology::Mesh& mesh) const {
 void CutFront::apply(const Mesh&, const topology::ChangeSet& changes, bool has_opened_faces_of_it) {
     if (is_empty() || changes.is_empty()) return;
     has_changed_ = true;
-    for (const topology::NodeRecord& record : changes.nodes_added) {
+    for (const topology::VertexRecord& record : changes.nodes_added) {
         if (record.num_sources != 1) continue;
-        const NodeId source = record.sources[0].node;
+        const VertexId source = record.sources[0].node;
         if (const auto place = nodes_.find(source); place != nodes_.end()) {
             Node copy = place->second;
             if (!has_opened_faces_of_it) copy.next_twin = record.id;
@@ -108,30 +108,30 @@ void CutFront::apply(const Mesh&, const topology::ChangeSet& changes, bool has_o
         }
         const auto place = crossed_.find(source);
         if (place == crossed_.end()) continue;
-        for (const NodeId other : std::vector<NodeId>(place->second)) toggle(record.id, other);
+        for (const VertexId other : std::vector<VertexId>(place->second)) toggle(record.id, other);
     }
 }
 
-void CutFront::forget(const Mesh& mesh, const std::vector<NodeId>& nodes) {
-    for (const NodeId n : nodes) {
+void CutFront::forget(const Mesh& mesh, const std::vector<VertexId>& nodes) {
+    for (const VertexId n : nodes) {
         if (const auto place = nodes_.find(n); place != nodes_.end()) {
-            NodeId before = n;
+            VertexId before = n;
             while (next_twin(before) != n) before = next_twin(before);
             nodes_.at(before).next_twin = place->second.next_twin;
             nodes_.erase(place);
         }
         const auto place = crossed_.find(n);
         if (place == crossed_.end()) continue;
-        for (const NodeId other : std::vector<NodeId>(place->second)) {
+        for (const VertexId other : std::vector<VertexId>(place->second)) {
             // Edges to nodes off the cut are forgotten with the node. Others also belong to their
             // other end.
             if (!is_on(other)) toggle(n, other);
         }
     }
     std::erase_if(places_, [&](const auto& place) {
-        const ElementId e = place.first;
+        const CellId e = place.first;
         return !mesh.is_alive(e) ||
-               std::ranges::any_of(mesh.corners(e), [&](NodeId n) { return !is_on(n); });
+               std::ranges::any_of(mesh.corners(e), [&](VertexId n) { return !is_on(n); });
     });
 }
 

@@ -35,9 +35,9 @@ class CutFront {
     ///                           on one side
     /// @param local_edge_length  size of the elements there, m
     /// @param rank               see SnapHistory::take_rank()
-    void put_on(NodeId n, bool is_exact, double local_edge_length, std::uint64_t rank);
-    bool is_on(NodeId n) const { return nodes_.contains(n); }
-    bool is_near(NodeId n) const {
+    void put_on(VertexId n, bool is_exact, double local_edge_length, std::uint64_t rank);
+    bool is_on(VertexId n) const { return nodes_.contains(n); }
+    bool is_near(VertexId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() && !place->second.is_exact;
     }
@@ -45,39 +45,39 @@ class CutFront {
     /// Marks a node where the same surface has cut before. What that cut left joined between frozen
     /// nodes stays joined.
     /// @pre  is_on(n)
-    void freeze(NodeId n) { nodes_.at(n).is_frozen = true; }
-    bool is_frozen(NodeId n) const {
+    void freeze(VertexId n) { nodes_.at(n).is_frozen = true; }
+    bool is_frozen(VertexId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() && place->second.is_frozen;
     }
 
     /// Returns a number that is lower for nodes that came to the cut earlier. It is 0 for nodes
     /// that are not on the cut.
-    std::uint64_t rank(NodeId n) const {
+    std::uint64_t rank(VertexId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() ? place->second.rank : 0;
     }
 
     /// Returns the next twin of a node on the cut. Twins are the nodes that one node has become as
     /// faces of this cut opened; they form a ring. Returns the node itself if it has no twin.
-    NodeId next_twin(NodeId n) const {
+    VertexId next_twin(VertexId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() ? place->second.next_twin : n;
     }
 
     /// Returns the size of the elements at a node on the cut, m, and 0 for other nodes.
-    double local_edge_length(NodeId n) const {
+    double local_edge_length(VertexId n) const {
         const auto place = nodes_.find(n);
         return place != nodes_.end() ? place->second.local_edge_length : 0.0;
     }
 
-    bool is_crossed(NodeId a, NodeId b) const;
-    void toggle(NodeId a, NodeId b);
+    bool is_crossed(VertexId a, VertexId b) const;
+    void toggle(VertexId a, VertexId b);
 
     /// The side of an element: whether the path from the element to one of its corners crosses the
     /// cut.
     struct Place {
-        NodeId corner;
+        VertexId corner;
         bool is_crossed = false;
     };
 
@@ -86,13 +86,13 @@ class CutFront {
     /// - An element with a corner off the cut is on the side of that corner.
     /// - An element with corners near the cut is on the side of the one that came to the cut last.
     /// - An element with all corners exactly on the cut has the side that place_halves() has kept.
-    std::optional<Place> place_of(ElementId e, std::span<const NodeId, 4> corners) const;
+    std::optional<Place> place_of(CellId e, std::span<const VertexId, 4> corners) const;
 
     /// Keeps the sides of the halves of divided elements, if all their corners are on the cut.
     /// `middle` divides the edge from `a` to `b`. A half without the corner that gave the side of
     /// the whole is on the other side of the cut through the middle.
     /// @pre  the intersections of the new edges are counted
-    void place_halves(const topology::Mesh& mesh, NodeId a, NodeId b, NodeId middle,
+    void place_halves(const topology::Mesh& mesh, VertexId a, VertexId b, VertexId middle,
                       std::span<const topology::MeshEdit::DividedElement> elements);
 
     /// True if the ids of the nodes on the cut and of the elements exist in the mesh, and twins
@@ -120,10 +120,10 @@ class CutFront {
                bool has_opened_faces_of_it = false);
     /// Returns the nodes on the cut for which keep(node) is false, in ascending order.
     template <class Keep>
-    std::vector<NodeId> nodes_unless(Keep keep) const;
+    std::vector<VertexId> nodes_unless(Keep keep) const;
     /// Makes nodes no longer count as on the cut. Forgets which of their edges to nodes off the cut
     /// are crossed, and the sides that were kept of elements at them.
-    void forget(const topology::Mesh& mesh, const std::vector<NodeId>& nodes);
+    void forget(const topology::Mesh& mesh, const std::vector<VertexId>& nodes);
 
     /// Returns how many nodes came to the cut since the last call of set_reviewed().
     std::size_t num_new() const { return num_new_; }
@@ -143,7 +143,7 @@ class CutFront {
         bool is_exact = false;
         double local_edge_length = 0.0;
         std::uint64_t rank = 0;
-        NodeId next_twin;
+        VertexId next_twin;
         bool is_frozen = false;
         static void archive(auto& ar, auto& self) {
             ar(self.is_exact, self.local_edge_length, self.rank, self.next_twin, self.is_frozen);
@@ -154,18 +154,18 @@ class CutFront {
         bool is_crossed = false;
         static void archive(auto& ar, auto& self) { ar(self.corner, self.is_crossed); }
     };
-    std::unordered_map<NodeId, Node> nodes_;
+    std::unordered_map<VertexId, Node> nodes_;
     // By node, the other ends of its crossed edges; each edge is in both directions.
-    std::unordered_map<NodeId, std::vector<NodeId>> crossed_;
+    std::unordered_map<VertexId, std::vector<VertexId>> crossed_;
     // Of elements whose corners are all on the cut.
-    std::unordered_map<ElementId, LocalPlace> places_;
+    std::unordered_map<CellId, LocalPlace> places_;
     std::size_t num_new_ = 0;
     bool has_changed_ = false;
 };
 
 template <class Keep>
-std::vector<NodeId> CutFront::nodes_unless(Keep keep) const {
-    std::vector<NodeId> nodes;
+std::vector<VertexId> CutFront::nodes_unless(Keep keep) const {
+    std::vector<VertexId> nodes;
     for (const auto& [n, node] : nodes_)
         if (!keep(n)) nodes.push_back(n);
     std::sort(nodes.begin(), nodes.end());

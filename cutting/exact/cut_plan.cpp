@@ -7,10 +7,10 @@ namespace incise::cutting {
 
 topology::ChangeSet execute(const CutPlan& plan, topology::Mesh& mesh) {
     topology::MeshEdit edit(mesh);
-    for (const ElementId e : plan.elements_to_remove)
+    for (const CellId e : plan.elements_to_remove)
         if (mesh.is_alive(e)) edit.remove(e);
     for (const FaceId f : plan.faces_to_open)
-        if (mesh.is_alive(f.element) && mesh.neighbor(f).is_valid()) edit.open(f);
+        if (mesh.is_alive(f.cell) && mesh.neighbor(f).is_valid()) edit.open(f);
     return edit.commit();
 }
 

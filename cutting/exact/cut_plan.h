@@ -11,7 +11,7 @@ namespace incise::cutting {
 
 /// The elements and faces that a carver or a separating blade changes.
 struct CutPlan {
-    std::vector<ElementId> elements_to_remove;
+    std::vector<CellId> elements_to_remove;
     std::vector<FaceId> faces_to_open;
 
     bool is_empty() const { return elements_to_remove.empty() && faces_to_open.empty(); }

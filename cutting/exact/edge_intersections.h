@@ -20,7 +20,7 @@ using EdgeIntersections = std::vector<EdgeIntersection>;  // in ascending order 
 
 /// Returns the end of an edge that is nearer to an intersection with it, or the first if both are
 /// equally near.
-inline NodeId nearer_end(const Edge& edge, const EdgeIntersection& intersection) {
+inline VertexId nearer_end(const Edge& edge, const EdgeIntersection& intersection) {
     return intersection.place <= 0.5 ? edge.a : edge.b;
 }
 

@@ -15,13 +15,13 @@ namespace incise::cutting {
 
 /// An edge of the mesh, with the lower node id first.
 struct Edge {
-    NodeId a, b;
+    VertexId a, b;
     std::uint64_t key() const { return (static_cast<std::uint64_t>(a.index()) << 32) | b.index(); }
     bool operator==(const Edge& other) const { return key() == other.key(); }
     auto operator<=>(const Edge& other) const { return key() <=> other.key(); }
 };
 
-inline Edge edge_between(NodeId a, NodeId b) { return a < b ? Edge{a, b} : Edge{b, a}; }
+inline Edge edge_between(VertexId a, VertexId b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
 struct EdgeHash {
     std::size_t operator()(const Edge& e) const {
@@ -36,12 +36,12 @@ class EdgeList {
   public:
     struct Entry {
         Edge edge;
-        ElementId element;  ///< the first that came with the edge
+        CellId element;  ///< the first that came with the edge
         bool operator<(const Entry& other) const { return edge < other.edge; }
     };
 
     /// Returns the number of an edge, from 0. Adds the edge if it is new.
-    std::size_t add(const Edge& edge, ElementId element) {
+    std::size_t add(const Edge& edge, CellId element) {
         if (2 * entries_.size() >= table_.size()) grow();
         std::uint32_t& place = table_[place_of(edge)];
         if (place == none) {

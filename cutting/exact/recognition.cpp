@@ -23,7 +23,7 @@ class Recognizer {
 
     /// Puts the node on the front if the surface passes by it as one of its records says. `length`
     /// is that of the longest edge there, m. Returns the record if the node is frozen, or null.
-    const CutRecord* look_at(NodeId n, double length, CutFront& front) const {
+    const CutRecord* look_at(VertexId n, double length, CutFront& front) const {
         for (const CutRecord& record : snap_history_.of(n)) {
             const bool may_freeze = is_where_it_was(n, record, length);
             if (front.is_on(n) && !may_freeze) continue;
@@ -43,11 +43,11 @@ class Recognizer {
     }
 
     /// Returns how far the node has moved across the surface since the cut of the record, m.
-    Vec3 motion_across(NodeId n, const CutRecord& record) const {
+    Vec3 motion_across(VertexId n, const CutRecord& record) const {
         return record.normal.dot(tissue_.after[n.index()] - record.place) * record.normal;
     }
     /// True if the surface would be on the other side of the node without this motion.
-    bool is_passed_over(NodeId n, const Vec3& motion) const {
+    bool is_passed_over(VertexId n, const Vec3& motion) const {
         const Vec3 x = tissue_.after[n.index()], without = x - motion;
         std::vector<Crossing> crossings;
         surface_.append_crossings({x, x}, {without, without}, crossings);
@@ -56,7 +56,7 @@ class Recognizer {
 
   private:
     /// Returns the intersection of the surface with the place at which a cut passed by the node.
-    std::optional<Crossing> intersection_by(NodeId n, const Vec3& to_surface, const Vec3& normal,
+    std::optional<Crossing> intersection_by(VertexId n, const Vec3& to_surface, const Vec3& normal,
                                             double length) const {
         return intersection_at(
             {tissue_.before[n.index()] + to_surface, tissue_.after[n.index()] + to_surface}, normal,
@@ -91,12 +91,12 @@ class Recognizer {
     }
 
     /// True if the surface may be that of the record, and the node has hardly moved across it.
-    bool is_where_it_was(NodeId n, const CutRecord& record, double length) const {
+    bool is_where_it_was(VertexId n, const CutRecord& record, double length) const {
         const double size = std::max(length, snap_history_.uncut_size(n));
         return surface_.identity() != no_identity && record.surface == surface_.identity() &&
                std::abs(record.normal.dot(tissue_.after[n.index()] - record.place)) <= near * size;
     }
-    bool has_stayed(NodeId n, const CutRecord& record, double length) const {
+    bool has_stayed(VertexId n, const CutRecord& record, double length) const {
         return (tissue_.after[n.index()] - record.place).norm() <= SnapHistory::rounding * length;
     }
     static bool is_along(const CutRecord& record, const Vec3& normal) {
@@ -110,7 +110,7 @@ class Recognizer {
 
 /// A node on the earlier cut, and how far it has moved across the surface since, m.
 struct Frozen {
-    NodeId node;
+    VertexId node;
     Vec3 motion;
     std::uint64_t rank;
 };
@@ -123,7 +123,7 @@ EdgeList edges_beside(const TissueMotion& tissue, const CutSurface& surface,
         return surface.may_meet(Box(box.min() - margin, box.max() + margin));
     };
     EdgeList edges;
-    tissue.for_each_near(may_meet, [&](ElementId e) {
+    tissue.for_each_near(may_meet, [&](CellId e) {
         const topology::CellTraits& t = traits(tissue.mesh.kind(e));
         const auto corners = tissue.mesh.corners(e);
         for (int k = 0; k < t.num_edges; ++k) {
@@ -147,7 +147,7 @@ void recognize(const TissueMotion& tissue, const CutSurface& surface,
         beside = edges_beside(tissue, surface, snap_history);
         edges = beside.entries();
     }
-    const auto is_new = [&](NodeId n) { return !snap_history.of(n).empty() && !front.is_on(n); };
+    const auto is_new = [&](VertexId n) { return !snap_history.of(n).empty() && !front.is_on(n); };
     std::vector<Edge> scarred;
     for (const auto& [edge, element] : edges)
         if (is_new(edge.a) || is_new(edge.b)) scarred.push_back(edge);
@@ -155,24 +155,24 @@ void recognize(const TissueMotion& tissue, const CutSurface& surface,
     // Sorted, so that the order does not depend on which elements are near.
     std::sort(scarred.begin(), scarred.end());
 
-    std::unordered_map<NodeId, double> lengths;  // of the longest edge at each node, m
+    std::unordered_map<VertexId, double> lengths;  // of the longest edge at each node, m
     for (const auto& [edge, element] : edges) {
         const double length =
             (tissue.mesh.rest_position(edge.b) - tissue.mesh.rest_position(edge.a)).norm();
-        for (const NodeId n : {edge.a, edge.b}) lengths[n] = std::max(lengths[n], length);
+        for (const VertexId n : {edge.a, edge.b}) lengths[n] = std::max(lengths[n], length);
     }
 
     const Recognizer recognizer(tissue, surface, snap_history);
     std::vector<Frozen> frozen;
     for (const Edge& edge : scarred)
-        for (const NodeId n : {edge.a, edge.b}) {
+        for (const VertexId n : {edge.a, edge.b}) {
             if (front.is_on(n)) continue;
             if (const CutRecord* record = recognizer.look_at(n, lengths.at(n), front))
                 frozen.push_back({n, recognizer.motion_across(n, *record), record->rank});
         }
 
     // Nodes beside the faces of the earlier cut that the motion has carried through the surface.
-    std::unordered_map<NodeId, std::vector<NodeId>> neighbors;
+    std::unordered_map<VertexId, std::vector<VertexId>> neighbors;
     if (!frozen.empty())
         for (const auto& [edge, element] : edges) {
             neighbors[edge.a].push_back(edge.b);
@@ -180,7 +180,7 @@ void recognize(const TissueMotion& tissue, const CutSurface& surface,
         }
     for (std::size_t i = 0; i < frozen.size(); ++i) {
         const auto [from, motion, rank] = frozen[i];
-        for (const NodeId n : neighbors[from]) {
+        for (const VertexId n : neighbors[from]) {
             if (front.is_frozen(n) || !recognizer.is_passed_over(n, motion)) continue;
             front.put_on(n, false, lengths.at(n), rank);
             front.freeze(n);

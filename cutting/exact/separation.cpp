@@ -16,7 +16,7 @@ bool is_frozen(const topology::Mesh& mesh, const CutFront& front, FaceId f) {
 }  // namespace
 
 std::vector<FaceId> faces_to_separate(const topology::Mesh& mesh, const CutFront& front,
-                                      const std::vector<ElementId>& touched,
+                                      const std::vector<CellId>& touched,
                                       const PlaceOnCut& place_on_cut) {
     std::vector<FaceId> faces = Sides(mesh, front, touched, place_on_cut).separated_faces();
     std::erase_if(faces, [&](FaceId f) { return is_frozen(mesh, front, f); });

@@ -18,7 +18,7 @@ namespace incise::cutting {
 /// @param touched       the elements to look at: all that the edit has changed, and possibly others
 /// @param place_on_cut  see Sides
 std::vector<FaceId> faces_to_separate(const topology::Mesh& mesh, const CutFront& front,
-                                      const std::vector<ElementId>& touched,
+                                      const std::vector<CellId>& touched,
                                       const PlaceOnCut& place_on_cut);
 
 }  // namespace incise::cutting

@@ -11,7 +11,7 @@ namespace incise::cutting {
 using topology::CellKind;
 using topology::Mesh;
 
-Sides::Sides(const Mesh& mesh, const CutFront& front, const std::vector<ElementId>& touched,
+Sides::Sides(const Mesh& mesh, const CutFront& front, const std::vector<CellId>& touched,
              const PlaceOnCut& place_on_cut)
     : mesh_(mesh), front_(front), place_on_cut_(place_on_cut) {
     collect_faces(touched);
@@ -27,19 +27,19 @@ std::vector<FaceId> Sides::separated_faces() const {
 
 /// Collects the faces on the cut of the touched elements, and of neighbours with all corners on the
 /// cut.
-void Sides::collect_faces(const std::vector<ElementId>& touched) {
-    std::vector<ElementId> pending = touched;
-    std::unordered_set<ElementId> followed;
+void Sides::collect_faces(const std::vector<CellId>& touched) {
+    std::vector<CellId> pending = touched;
+    std::unordered_set<CellId> followed;
     while (!pending.empty()) {
-        const ElementId e = pending.back();
+        const CellId e = pending.back();
         pending.pop_back();
         if (mesh_.kind(e) != CellKind::tetrahedron) continue;
         for (int f = 0; f < 4; ++f) {
             const FaceId face{e, f}, other = mesh_.neighbor(face);
             if (!other.is_valid() || !is_on_cut(face)) continue;
             faces_.push_back(std::min(face, other));
-            if (!far_corner(other.element).is_valid() && followed.insert(other.element).second)
-                pending.push_back(other.element);
+            if (!far_corner(other.cell).is_valid() && followed.insert(other.cell).second)
+                pending.push_back(other.cell);
         }
     }
     std::sort(faces_.begin(), faces_.end());
@@ -56,11 +56,11 @@ void Sides::place_elements_on_cut() {
     };
     std::priority_queue<Bond> bonds;
     const auto add = [&](FaceId from, FaceId to) {
-        if (is_placed(from.element) && !is_placed(to.element))
+        if (is_placed(from.cell) && !is_placed(to.cell))
             bonds.push({topology::rest_area(mesh_, from), from});
     };
     for (const FaceId face : faces_)
-        for (const ElementId e : {face.element, mesh_.neighbor(face).element})
+        for (const CellId e : {face.cell, mesh_.neighbor(face).cell})
             if (!far_corner(e).is_valid())
                 if (const auto known = place(e)) places_.emplace(e, *known);
     for (const FaceId face : faces_) {
@@ -70,10 +70,10 @@ void Sides::place_elements_on_cut() {
     while (!bonds.empty()) {
         const FaceId from = bonds.top().placed;
         bonds.pop();
-        const ElementId e = mesh_.neighbor(from).element;
+        const CellId e = mesh_.neighbor(from).cell;
         if (is_placed(e)) continue;
-        const NodeId corner = mesh_.face_corner(from, 0);
-        places_.emplace(e, Place{corner, is_crossed_to(from.element, corner)});
+        const VertexId corner = mesh_.face_corner(from, 0);
+        places_.emplace(e, Place{corner, is_crossed_to(from.cell, corner)});
         for (int f = 0; f < 4; ++f)
             if (const FaceId next = mesh_.neighbor({e, f}); next.is_valid()) add({e, f}, next);
     }
@@ -86,14 +86,14 @@ bool Sides::is_on_cut(FaceId f) const {
 }
 
 /// Returns a corner that is not on the cut, or an invalid id if all corners are on it.
-NodeId Sides::far_corner(ElementId e) const {
-    for (const NodeId n : mesh_.corners(e))
+VertexId Sides::far_corner(CellId e) const {
+    for (const VertexId n : mesh_.corners(e))
         if (!front_.is_on(n)) return n;
     return {};
 }
 
-std::optional<CutFront::Place> Sides::place(ElementId e) const {
-    if (const NodeId far = far_corner(e); far.is_valid()) return Place{far};
+std::optional<CutFront::Place> Sides::place(CellId e) const {
+    if (const VertexId far = far_corner(e); far.is_valid()) return Place{far};
     if (const auto known = places_.find(e); known != places_.end()) return known->second;
     if (mesh_.kind(e) != CellKind::tetrahedron) return std::nullopt;
     if (place_on_cut_)
@@ -101,16 +101,16 @@ std::optional<CutFront::Place> Sides::place(ElementId e) const {
     return front_.place_of(e, mesh_.corners(e).first<4>());
 }
 
-bool Sides::is_crossed_to(ElementId e, NodeId n) const {
+bool Sides::is_crossed_to(CellId e, VertexId n) const {
     const Place from = *place(e);
     return from.is_crossed != (from.corner != n && front_.is_crossed(from.corner, n));
 }
 
 bool Sides::is_separated(FaceId f) const {
-    const ElementId here = f.element, there = mesh_.neighbor(f).element;
+    const CellId here = f.cell, there = mesh_.neighbor(f).cell;
     if (!is_placed(here) || !is_placed(there)) return false;
     for (int p = 0; p < 3; ++p) {
-        const NodeId n = mesh_.face_corner(f, p);
+        const VertexId n = mesh_.face_corner(f, p);
         if (is_crossed_to(here, n) == is_crossed_to(there, n)) return false;
     }
     return true;

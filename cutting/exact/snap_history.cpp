@@ -29,11 +29,11 @@ bool are_of_one_plane(const CutRecord& a, const CutRecord& b, double size) {
 
 }  // namespace
 
-void SnapHistory::add(NodeId n, const CutRecord& record) {
+void SnapHistory::add(VertexId n, const CutRecord& record) {
     if (!has(n, record, record.to_surface.norm())) snap_history_[n].push_back(record);
 }
 
-const CutRecord* SnapHistory::find(NodeId n, const CutRecord& record, double size) const {
+const CutRecord* SnapHistory::find(VertexId n, const CutRecord& record, double size) const {
     const auto known = of(n);
     const auto place = std::find_if(known.begin(), known.end(), [&](const CutRecord& other) {
         return is_same(other, record, size);
@@ -41,7 +41,7 @@ const CutRecord* SnapHistory::find(NodeId n, const CutRecord& record, double siz
     return place == known.end() ? nullptr : &*place;
 }
 
-std::span<const CutRecord> SnapHistory::of(NodeId n) const {
+std::span<const CutRecord> SnapHistory::of(VertexId n) const {
     const auto place = snap_history_.find(n);
     return place == snap_history_.end() ? std::span<const CutRecord>{}
                                         : std::span<const CutRecord>(place->second);
@@ -56,7 +56,7 @@ double SnapHistory::largest_uncut_size() const {
 void SnapHistory::follow_division(const PlacedNode& a, const PlacedNode& b,
                                   const PlacedNode& middle, double rest_length) {
     double least = std::numeric_limits<double>::infinity();
-    for (const NodeId end : {a.node, b.node}) {
+    for (const VertexId end : {a.node, b.node}) {
         double& size = uncut_sizes_[end];
         size = std::max(size, rest_length);
         least = std::min(least, size);
@@ -110,9 +110,9 @@ void SnapHistory::inherit(const PlacedNode& from, const PlacedNode& to, const Pl
 }
 
 void SnapHistory::apply(const topology::Mesh&, const topology::ChangeSet& changes) {
-    for (const topology::NodeRecord& record : changes.nodes_added) {
+    for (const topology::VertexRecord& record : changes.nodes_added) {
         if (record.num_sources != 1) continue;
-        const NodeId source = record.sources[0].node;
+        const VertexId source = record.sources[0].node;
         if (const double size = uncut_size(source); size > 0.0) uncut_sizes_[record.id] = size;
         const auto place = snap_history_.find(source);
         if (place != snap_history_.end())

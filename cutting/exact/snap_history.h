@@ -32,7 +32,7 @@ struct CutRecord {
 
 /// A node and its position, m.
 struct PlacedNode {
-    NodeId node;
+    VertexId node;
     Vec3 place;
 };
 
@@ -45,18 +45,18 @@ struct PlacedNode {
 /// no more once the tissue has deformed or turned.
 class SnapHistory {
   public:
-    void add(NodeId n, const CutRecord& record);
+    void add(VertexId n, const CutRecord& record);
     /// Returns the record of a node whose normal and distance are those of `record`, or null.
     /// @param n       the node
     /// @param record  where the present cut passes by the node
     /// @param size    of the elements there, m, by which rounding is measured
     /// @lifetime  the pointer is valid until records of the node change
-    const CutRecord* find(NodeId n, const CutRecord& record, double size) const;
-    bool has(NodeId n, const CutRecord& record, double size) const {
+    const CutRecord* find(VertexId n, const CutRecord& record, double size) const;
+    bool has(VertexId n, const CutRecord& record, double size) const {
         return find(n, record, size) != nullptr;
     }
     /// Returns all records of a node.
-    std::span<const CutRecord> of(NodeId n) const;
+    std::span<const CutRecord> of(VertexId n) const;
     bool is_empty() const { return snap_history_.empty(); }
 
     /// Returns the next number. Nodes of all cuts are numbered in the order in which they come to a
@@ -72,7 +72,7 @@ class SnapHistory {
     /// Returns the size at rest of the elements at a node before any cut, m: the longest of their
     /// edges that cuts have divided. It does not shrink as cuts divide the elements further. It is
     /// 0 if no edge there was divided.
-    double uncut_size(NodeId n) const {
+    double uncut_size(VertexId n) const {
         const auto it = uncut_sizes_.find(n);
         return it == uncut_sizes_.end() ? 0.0 : it->second;
     }
@@ -92,8 +92,8 @@ class SnapHistory {
     void inherit_planes(const PlacedNode& a, const PlacedNode& b, const PlacedNode& middle);
     void inherit(const PlacedNode& from, const PlacedNode& to, const PlacedNode& middle);
 
-    std::unordered_map<NodeId, std::vector<CutRecord>> snap_history_;
-    std::unordered_map<NodeId, double> uncut_sizes_;  // m
+    std::unordered_map<VertexId, std::vector<CutRecord>> snap_history_;
+    std::unordered_map<VertexId, double> uncut_sizes_;  // m
     std::uint64_t next_rank_ = 1;
 };
 

@@ -79,7 +79,7 @@ class Splitter {
           snap_(std::max(options.snap, smallest_snap)),
           num_old_nodes_(mesh.node_capacity()) {
         if (end)
-            end_.emplace(mesh, end->fragments, end->blade, [&](NodeId n) { return point(n)[1]; });
+            end_.emplace(mesh, end->fragments, end->blade, [&](VertexId n) { return point(n)[1]; });
     }
 
     Split run() {
@@ -103,7 +103,7 @@ class Splitter {
   private:
     /// An edge to be divided, unless one of its ends comes to count as on the surface.
     struct Pending {
-        ElementId element;  // one of those that have the edge
+        CellId element;  // one of those that have the edge
         EdgeIntersections intersections;
     };
     struct Turn {
@@ -118,7 +118,7 @@ class Splitter {
         }
     };
 
-    MovingPoint point(NodeId n) const {
+    MovingPoint point(VertexId n) const {
         if (n.index() < num_old_nodes_)
             return {tissue_.before[n.index()], tissue_.after[n.index()]};
         return new_points_[n.index() - num_old_nodes_];
@@ -126,12 +126,12 @@ class Splitter {
 
     void leave_behind(const topology::ChangeSet& changes) {
         cutting::leave_behind(
-            mesh_, surface_, [&](NodeId n) { return final_position(n, changes); },
+            mesh_, surface_, [&](VertexId n) { return final_position(n, changes); },
             report_.elements_crossed > 0, front_);
     }
 
     /// Returns the position of a node after the step. A copy is where its source is.
-    Vec3 final_position(NodeId n, const topology::ChangeSet& changes) const {
+    Vec3 final_position(VertexId n, const topology::ChangeSet& changes) const {
         if (n.index() >= num_old_nodes_ + new_points_.size()) {
             const std::size_t row = n.index() - changes.node_capacity_before;
             n = changes.nodes_added[row].sources[0].node;
@@ -139,11 +139,11 @@ class Splitter {
         return point(n)[1];
     }
 
-    int generation(NodeId n) const {
+    int generation(VertexId n) const {
         return n.index() < num_old_nodes_ ? 0 : generations_[n.index() - num_old_nodes_];
     }
 
-    Vec3 rest_edge(NodeId from, NodeId to) const {
+    Vec3 rest_edge(VertexId from, VertexId to) const {
         return mesh_.rest_position(to) - mesh_.rest_position(from);
     }
     double rest_length(const Edge& edge) const { return rest_edge(edge.a, edge.b).norm(); }
@@ -152,32 +152,32 @@ class Splitter {
     EdgeIntersections intersections(const Edge& edge) const {
         return intersections_of(surface_, point(edge.a), point(edge.b), snap_);
     }
-    void receive(const Edge& edge, ElementId element, EdgeIntersections intersections);
-    CutRecord record_at(NodeId n, const EdgeIntersection& intersection) const;
-    bool is_at(NodeId end, double distance, const EdgeIntersection& intersection) const;
-    bool passes_by(NodeId n, NodeId other, const EdgeIntersection& intersection) const;
+    void receive(const Edge& edge, CellId element, EdgeIntersections intersections);
+    CutRecord record_at(VertexId n, const EdgeIntersection& intersection) const;
+    bool is_at(VertexId end, double distance, const EdgeIntersection& intersection) const;
+    bool passes_by(VertexId n, VertexId other, const EdgeIntersection& intersection) const;
     void resolve(const Edge& edge, const EdgeIntersections& intersections);
     bool is_to_be_divided(const Edge& edge, EdgeIntersections& intersections);
     void divide_next();
     bool may_be_divided(const Edge& edge) const {
         return std::max(generation(edge.a), generation(edge.b)) < max_generation;
     }
-    NodeId divide(const Edge& edge, ElementId element, const EdgeIntersection& intersection);
+    VertexId divide(const Edge& edge, CellId element, const EdgeIntersection& intersection);
     struct Division {
-        NodeId middle;
-        std::vector<NodeId> ring;  // the other nodes of the elements round the edge
+        VertexId middle;
+        std::vector<VertexId> ring;  // the other nodes of the elements round the edge
         const std::vector<MeshEdit::DividedElement>& elements;
     };
-    Division bisect(const Edge& edge, ElementId element, double place);
+    Division bisect(const Edge& edge, CellId element, double place);
     void place_halves(const Edge& edge, const Division& division, double local_edge_length);
     void divide_at_end();
-    NodeId divide_on_cut(const Edge& edge, ElementId element, double place);
+    VertexId divide_on_cut(const Edge& edge, CellId element, double place);
     void part();
-    std::optional<CutFront::Place> position_at_crease(ElementId e) const;
+    std::optional<CutFront::Place> position_at_crease(CellId e) const;
     void open(FaceId f);
     void put_on_lying_nodes();
-    void put_on(NodeId n, bool is_exact, double local_edge_length);
-    void snap_to(NodeId n, double local_edge_length);
+    void put_on(VertexId n, bool is_exact, double local_edge_length);
+    void snap_to(VertexId n, double local_edge_length);
 
     Mesh& mesh_;
     const TissueMotion& tissue_;
@@ -195,19 +195,19 @@ class Splitter {
     std::vector<int> generations_;  // of the new nodes: one more than that of their edges' ends
     std::unordered_map<Edge, Pending, EdgeHash> pending_;
     std::priority_queue<Turn> queue_;
-    NodesOnSurface lying_;            // on the surface to rounding
-    std::vector<ElementId> touched_;  // crossed, parts of such, or with a face on the surface
+    NodesOnSurface lying_;         // on the surface to rounding
+    std::vector<CellId> touched_;  // crossed, parts of such, or with a face on the surface
     SplitReport report_;
 };
 
 void Splitter::find_crossed_edges() {
     EdgeList edges;
-    std::vector<std::pair<ElementId, std::size_t>> edges_of_elements;
+    std::vector<std::pair<CellId, std::size_t>> edges_of_elements;
     const auto may_meet = [&](const Box& box) { return surface_.may_meet(box); };
-    tissue_.for_each_near(may_meet, [&](ElementId e) {
+    tissue_.for_each_near(may_meet, [&](CellId e) {
         const auto corners = mesh_.corners(e);
         std::array<MovingPoint, topology::max_corners> points;
-        std::ranges::transform(corners, points.begin(), [&](NodeId n) { return point(n); });
+        std::ranges::transform(corners, points.begin(), [&](VertexId n) { return point(n); });
         if (!surface_.may_meet_hull(std::span(points).first(corners.size()))) return;
         const topology::CellTraits& t = traits(mesh_.kind(e));
         for (int k = 0; k < t.num_edges; ++k) {
@@ -234,7 +234,7 @@ void Splitter::find_crossed_edges() {
     for (const auto& [e, edge] : edges_of_elements)
         if (is_crossed[edge] && (touched_.empty() || touched_.back() != e)) touched_.push_back(e);
     report_.elements_crossed = touched_.size();
-    for (const ElementId e : touched_)
+    for (const CellId e : touched_)
         if (mesh_.kind(e) != CellKind::tetrahedron) {
             if (end_) {  // the blade has not come to it: the cut ends as its front
                 touched_.clear();
@@ -245,7 +245,7 @@ void Splitter::find_crossed_edges() {
         }
 
     lying_ = NodesOnSurface(surface_, tissue_, edges.entries(), smallest_snap);
-    ElementId last;
+    CellId last;
     for (const auto& [e, edge] : edges_of_elements) {
         if (lying_.is_empty()) break;
         if (e != last && lying_.have_face_of(mesh_, e)) touched_.push_back(e);
@@ -262,7 +262,7 @@ void Splitter::part() {
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     const PlaceOnCut unknown;
-    const PlaceOnCut position_at_crease = [&](ElementId e) { return this->position_at_crease(e); };
+    const PlaceOnCut position_at_crease = [&](CellId e) { return this->position_at_crease(e); };
     std::vector<FaceId> faces = faces_to_separate(
         mesh_, front_, touched_, surface_.has_creases() ? position_at_crease : unknown);
     if (end_) faces = end_->faces_to_open(faces);
@@ -274,11 +274,11 @@ void Splitter::part() {
 
 /// Returns the side of an element by its middle. Corners that the edit has made are not used:
 /// rounding has moved them off their edges, and intersections are counted as if it had not.
-std::optional<CutFront::Place> Splitter::position_at_crease(ElementId e) const {
+std::optional<CutFront::Place> Splitter::position_at_crease(CellId e) const {
     std::array<MovingPoint, 4> points;
-    NodeId old;
+    VertexId old;
     for (std::size_t k = 0; k < 4; ++k) {
-        const NodeId n = mesh_.corners(e)[k];
+        const VertexId n = mesh_.corners(e)[k];
         points[k] = point(n);
         if (n.index() < num_old_nodes_) old = n;
     }
@@ -305,17 +305,17 @@ void Splitter::put_on_lying_nodes() {
     }
 }
 
-void Splitter::put_on(NodeId n, bool is_exact, double local_edge_length) {
+void Splitter::put_on(VertexId n, bool is_exact, double local_edge_length) {
     front_.put_on(n, is_exact, local_edge_length,
                   front_.is_on(n) ? front_.rank(n) : snap_history_.take_rank());
 }
 
-void Splitter::snap_to(NodeId n, double local_edge_length) {
+void Splitter::snap_to(VertexId n, double local_edge_length) {
     if (!front_.is_on(n) && n.index() < num_old_nodes_) ++report_.nodes_snapped;
     put_on(n, false, local_edge_length);
 }
 
-CutRecord Splitter::record_at(NodeId n, const EdgeIntersection& intersection) const {
+CutRecord Splitter::record_at(VertexId n, const EdgeIntersection& intersection) const {
     const Vec3 x = point(n)[1];
     const bool is_exact = front_.is_on(n) && !front_.is_near(n);
     return {intersection.normal, intersection.point - x, is_exact,
@@ -324,7 +324,7 @@ CutRecord Splitter::record_at(NodeId n, const EdgeIntersection& intersection) co
 
 /// True if an intersection with an edge counts as at the end of the edge.
 /// @param distance  of the intersection from this end, as a share of the edge
-bool Splitter::is_at(NodeId end, double distance, const EdgeIntersection& intersection) const {
+bool Splitter::is_at(VertexId end, double distance, const EdgeIntersection& intersection) const {
     if (distance < snap_) return true;
     const double size = (point(end)[1] - intersection.point).norm();
     return snap_history_.has(end, record_at(end, intersection), size);
@@ -332,7 +332,7 @@ bool Splitter::is_at(NodeId end, double distance, const EdgeIntersection& inters
 
 /// True if an intersection with the edge from `n` to `other` is none of its own: the surface only
 /// passes by `n`, which is near it.
-bool Splitter::passes_by(NodeId n, NodeId other, const EdgeIntersection& intersection) const {
+bool Splitter::passes_by(VertexId n, VertexId other, const EdgeIntersection& intersection) const {
     if (!front_.is_near(n)) return false;
     if (!surface_.has_creases()) return true;
     const double length = (point(other)[1] - point(n)[1]).norm();
@@ -346,7 +346,7 @@ bool Splitter::is_to_be_divided(const Edge& edge, EdgeIntersections& intersectio
         while (begin != end && front_.is_on(edge.a) && begin->place < bend) ++begin;
         while (begin != end && front_.is_on(edge.b) && (end - 1)->place > 1.0 - bend) --end;
     };
-    const auto counts_as_on = [&](NodeId n) { return front_.is_on(n) || lying_.contains(n); };
+    const auto counts_as_on = [&](VertexId n) { return front_.is_on(n) || lying_.contains(n); };
     const auto are_both_on = [&] { return counts_as_on(edge.a) && counts_as_on(edge.b); };
     if (begin != end && passes_by(edge.a, edge.b, *begin)) ++begin;
     if (begin != end && passes_by(edge.b, edge.a, *(end - 1))) --end;
@@ -364,7 +364,7 @@ bool Splitter::is_to_be_divided(const Edge& edge, EdgeIntersections& intersectio
     const auto is_at_b = [&](const EdgeIntersection& p) {
         return is_near_b(p) && (nearer_end(edge, p) == edge.b || !is_near_a(p));
     };
-    const auto bring = [&](NodeId n, const EdgeIntersection& intersection) {
+    const auto bring = [&](VertexId n, const EdgeIntersection& intersection) {
         if (front_.is_on(n)) return;
         snap_to(n, length);
         snap_history_.add(n, record_at(n, intersection));
@@ -377,7 +377,7 @@ bool Splitter::is_to_be_divided(const Edge& edge, EdgeIntersections& intersectio
     return true;
 }
 
-void Splitter::receive(const Edge& edge, ElementId element, EdgeIntersections intersections) {
+void Splitter::receive(const Edge& edge, CellId element, EdgeIntersections intersections) {
     queue_.push({first_of(intersections).time, rest_length(edge), edge});
     pending_.insert_or_assign(edge, Pending{element, std::move(intersections)});
 }
@@ -386,7 +386,7 @@ void Splitter::receive(const Edge& edge, ElementId element, EdgeIntersections in
 void Splitter::resolve(const Edge& edge, const EdgeIntersections& intersections) {
     for (const EdgeIntersection& intersection : intersections) {
         const bool is_at_a = front_.is_near(edge.a), is_at_b = front_.is_near(edge.b);
-        const NodeId nearer = nearer_end(edge, intersection);
+        const VertexId nearer = nearer_end(edge, intersection);
         if (is_at_a && (!is_at_b || nearer == edge.a))
             snap_history_.add(edge.a, record_at(edge.a, intersection));
         if (is_at_b && (!is_at_a || nearer == edge.b))
@@ -399,7 +399,7 @@ void Splitter::divide_next() {
     queue_.pop();
     now_ = time;
     const auto place = pending_.find(edge);
-    const ElementId element = place->second.element;
+    const CellId element = place->second.element;
     EdgeIntersections due = std::move(place->second.intersections), later;
     pending_.erase(place);
     // Later intersections are decided when the blade is there, as if they were in another step.
@@ -411,11 +411,11 @@ void Splitter::divide_next() {
     if (EdgeIntersections left = due; is_to_be_divided(edge, left)) {
         const EdgeIntersection& intersection = first_of(left);
         if (may_be_divided(edge)) {
-            const NodeId middle = divide(edge, element, intersection);
+            const VertexId middle = divide(edge, element, intersection);
             snap_history_.add(middle, record_at(middle, intersection));
             return;
         }
-        const NodeId end = nearer_end(edge, intersection);
+        const VertexId end = nearer_end(edge, intersection);
         snap_to(end, rest_length(edge));
         snap_history_.add(
             end, record_at(end, intersection));  // at a crease, also for a node made on the cut
@@ -424,20 +424,20 @@ void Splitter::divide_next() {
     if (!later.empty()) receive(edge, element, std::move(later));
 }
 
-Splitter::Division Splitter::bisect(const Edge& edge, ElementId element, double t) {
+Splitter::Division Splitter::bisect(const Edge& edge, CellId element, double t) {
     const MovingPoint from = point(edge.a), to = point(edge.b);
     const MeshEdit::Bisection& halves = edit_->bisect(element, edge.a, edge.b, t);
-    const NodeId middle = halves.node;
+    const VertexId middle = halves.node;
     if (end_) end_->follow(halves.elements);
     generations_.push_back(1 + std::max(generation(edge.a), generation(edge.b)));
     ++report_.edges_divided;
     new_points_.push_back({(1.0 - t) * from[0] + t * to[0], (1.0 - t) * from[1] + t * to[1]});
 
-    std::vector<NodeId> ring;
+    std::vector<VertexId> ring;
     for (const auto& [kept, added] : halves.elements) {
         touched_.push_back(kept);
         touched_.push_back(added);
-        for (const NodeId n : mesh_.corners(added)) {
+        for (const VertexId n : mesh_.corners(added)) {
             if (n == middle || n == edge.b) continue;
             ring.push_back(n);
             // Edges at the second end now belong to the added half only.
@@ -447,7 +447,7 @@ Splitter::Division Splitter::bisect(const Edge& edge, ElementId element, double 
     }
     std::sort(ring.begin(), ring.end());
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-    const auto placed = [&](NodeId n) { return PlacedNode{n, point(n)[1]}; };
+    const auto placed = [&](VertexId n) { return PlacedNode{n, point(n)[1]}; };
     snap_history_.follow_division(placed(edge.a), placed(edge.b), placed(middle),
                                   rest_length(edge));
     return {middle, std::move(ring), halves.elements};
@@ -460,32 +460,32 @@ void Splitter::place_halves(const Edge& edge, const Division& division, double l
     front_.place_halves(mesh_, edge.a, edge.b, middle, elements);
     for (const SuspendedCut& blade : suspended_) {
         position_of_suspended(blade, edge, middle, ring, local_edge_length, snap_history_,
-                              [&](NodeId n) { return point(n); });
+                              [&](VertexId n) { return point(n); });
         blade.front.place_halves(mesh_, edge.a, edge.b, middle, elements);
     }
 }
 
 /// Divides an edge where the surface crosses it, and returns the new node.
-NodeId Splitter::divide(const Edge& edge, ElementId element, const EdgeIntersection& intersection) {
+VertexId Splitter::divide(const Edge& edge, CellId element, const EdgeIntersection& intersection) {
     const double local_edge_length = rest_length(edge);
     const Division division = bisect(edge, element, intersection.place);
-    const NodeId middle = division.middle;
-    const std::vector<NodeId>& ring = division.ring;
+    const VertexId middle = division.middle;
+    const std::vector<VertexId>& ring = division.ring;
     put_on(middle, true, local_edge_length);
 
-    const auto holder = [&](NodeId other) {
-        ElementId found;
+    const auto holder = [&](VertexId other) {
+        CellId found;
         for (const auto& [kept, added] : division.elements)
-            for (const ElementId e : {kept, added})
+            for (const CellId e : {kept, added})
                 if (mesh_.corner_of(e, other) >= 0) found = e;
         return found;
     };
-    const auto ask = [&](NodeId other) { return intersections(edge_between(other, middle)); };
+    const auto ask = [&](VertexId other) { return intersections(edge_between(other, middle)); };
     std::vector<EdgeIntersections> to_ring;
     to_ring.reserve(ring.size());
-    for (const NodeId n : ring) to_ring.push_back(ask(n));
+    for (const VertexId n : ring) to_ring.push_back(ask(n));
     EdgeIntersections to_a = ask(edge.a), to_b = ask(edge.b);
-    const auto has_boundary = [&](NodeId p, NodeId q, NodeId r) {
+    const auto has_boundary = [&](VertexId p, VertexId q, VertexId r) {
         return surface_.ends_inside({point(p), point(q), point(r)});
     };
     place_on_side(front_, edge.a, edge.b, middle, ring, has_boundary,
@@ -493,7 +493,7 @@ NodeId Splitter::divide(const Edge& edge, ElementId element, const EdgeIntersect
     place_halves(edge, division, local_edge_length);
     // What the blade did earlier concerns the edge that was there then. In smaller steps, the new
     // edges would not be examined for it.
-    const auto take = [&](NodeId other, EdgeIntersections&& passed) {
+    const auto take = [&](VertexId other, EdgeIntersections&& passed) {
         std::erase_if(passed,
                       [&](const EdgeIntersection& p) { return p.time < intersection.time; });
         if (!passed.empty()) receive(edge_between(other, middle), holder(other), std::move(passed));
@@ -526,14 +526,14 @@ void Splitter::divide_at_end() {
 
 /// Divides an edge whose ends are both on the cut, and returns the new node. It is on the cut, too,
 /// on the side of one of the ends.
-NodeId Splitter::divide_on_cut(const Edge& edge, ElementId element, double t) {
+VertexId Splitter::divide_on_cut(const Edge& edge, CellId element, double t) {
     const double local_edge_length = rest_length(edge);
     const Division division = bisect(edge, element, t);
     const auto& [middle, ring, elements] = division;
     put_on(middle, !front_.is_near(edge.a) && !front_.is_near(edge.b), local_edge_length);
     place_on_side(
         front_, edge.a, edge.b, middle, ring,
-        [](NodeId, NodeId, NodeId) { return std::optional(false); },
+        [](VertexId, VertexId, VertexId) { return std::optional(false); },
         [](std::size_t) { return false; });
     place_halves(edge, division, local_edge_length);
     return middle;
@@ -552,7 +552,7 @@ Split finish(Mesh& mesh, const topology::FragmentMesh& fragments, const TissueMo
              SnapHistory& snap_history, std::span<SuspendedCut> resting) {
     if (front.is_empty()) return {};
     const BladeEnd end =
-        away_from_cut(blade, mesh, front, [&](NodeId n) { return tissue.after[n.index()]; });
+        away_from_cut(blade, mesh, front, [&](VertexId n) { return tissue.after[n.index()]; });
     const PathEnd path_end{end, fragments};
     Split result = Splitter(mesh, tissue, end.continuation(exit_distance(tissue, fragments, end)),
                             front, options, snap_history, resting, &path_end)

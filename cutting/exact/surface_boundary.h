@@ -11,7 +11,7 @@
 namespace incise::cutting {
 
 /// Returns the position of a node after the step, m.
-using PositionOf = std::function<Vec3(NodeId)>;
+using PositionOf = std::function<Vec3(VertexId)>;
 
 /// Forgets the nodes of the front round which the cut is finished. A later intersection there is
 /// part of another cut.

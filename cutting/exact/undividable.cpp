@@ -14,7 +14,7 @@ namespace incise::cutting {
 using topology::CellKind;
 using topology::Mesh;
 
-void refuse_to_divide(const Mesh& mesh, ElementId e) {
+void refuse_to_divide(const Mesh& mesh, CellId e) {
     throw UndividableElement("element " + std::to_string(mesh.label(e)) + " is a " +
                                  topology::traits(mesh.kind(e)).name +
                                  ", and only tetrahedra can be split",
@@ -26,7 +26,7 @@ namespace {
 /// An element at rest that is no tetrahedron.
 class RestingElement {
   public:
-    RestingElement(const Mesh& mesh, ElementId e)
+    RestingElement(const Mesh& mesh, CellId e)
         : traits_(topology::traits(mesh.kind(e))), corners_(mesh.corners(e)) {
         for (std::size_t k = 0; k < corners_.size(); ++k)
             points_[k] = mesh.rest_position(corners_[k]);
@@ -77,7 +77,7 @@ class RestingElement {
     }
 
     const topology::CellTraits& traits_;
-    std::span<const NodeId> corners_;
+    std::span<const VertexId> corners_;
     std::array<Vec3, topology::max_corners> points_;
     std::array<Vec3, topology::max_corners> outwards_;  // by corner, for faces moved by 1
     double mean_edge_ = 0.0;
@@ -97,8 +97,8 @@ double distance_to(const RestingElement& element, const CutSurface& surface, dou
 
 }  // namespace
 
-std::optional<ElementId> first_undividable(const Mesh& mesh, const CutSurface& surface) {
-    for (const ElementId e : mesh.elements())
+std::optional<CellId> first_undividable(const Mesh& mesh, const CutSurface& surface) {
+    for (const CellId e : mesh.elements())
         if (mesh.kind(e) != CellKind::tetrahedron &&
             RestingElement(mesh, e).is_crossed_by(surface, 0.0))
             return e;
@@ -107,7 +107,7 @@ std::optional<ElementId> first_undividable(const Mesh& mesh, const CutSurface& s
 
 void add_near_misses(const Mesh& mesh, const CutSurface& surface, double margin,
                      NearMisses& found) {
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         if (mesh.kind(e) == CellKind::tetrahedron) continue;
         const RestingElement element(mesh, e);
         const double limit = margin * element.mean_edge();

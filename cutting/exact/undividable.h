@@ -16,23 +16,22 @@ namespace incise::cutting {
 /// Thrown if a cut would divide an element that is no tetrahedron. The text names the element by
 /// its label. Callers add what the user can change.
 struct UndividableElement : InputError {
-    UndividableElement(const std::string& text, ElementId which)
-        : InputError(text), element(which) {}
-    ElementId element;
+    UndividableElement(const std::string& text, CellId which) : InputError(text), element(which) {}
+    CellId element;
 };
 
 /// Throws UndividableElement for an element.
-[[noreturn]] void refuse_to_divide(const topology::Mesh& mesh, ElementId e);
+[[noreturn]] void refuse_to_divide(const topology::Mesh& mesh, CellId e);
 
 /// Returns the element of lowest id that is no tetrahedron and that the surface crosses at rest.
 /// Returns nothing if there is none. Cost: O(n), and a test of the edges of such elements near the
 /// surface.
-std::optional<ElementId> first_undividable(const topology::Mesh& mesh, const CutSurface& surface);
+std::optional<CellId> first_undividable(const topology::Mesh& mesh, const CutSurface& surface);
 
 /// Elements that are no tetrahedra and that surfaces come near to at rest, without crossing them.
 struct NearMisses {
-    std::set<ElementId> elements;
-    ElementId nearest;  ///< of these elements; invalid if there are none
+    std::set<CellId> elements;
+    CellId nearest;  ///< of these elements; invalid if there are none
     double distance = std::numeric_limits<double>::infinity();  ///< of the nearest, m
 
     bool is_empty() const { return elements.empty(); }

@@ -23,14 +23,14 @@ struct TissueMotion {
     /// may_meet(box) is true, both for their own box and for every box round it.
     template <class MayMeet, class Visit>
     void for_each_near(MayMeet may_meet, Visit visit) const {
-        const auto look_at = [&](ElementId e) {
+        const auto look_at = [&](CellId e) {
             if (may_meet(box(e))) visit(e);
         };
         if (boxes) {
             boxes->for_each_near(mesh, may_meet, look_at);
             return;
         }
-        for (const ElementId e : mesh.elements()) look_at(e);
+        for (const CellId e : mesh.elements()) look_at(e);
     }
 
     /// Returns false only if no element is in the box `swept` at any time of the step. Without
@@ -38,7 +38,7 @@ struct TissueMotion {
     bool may_meet(const Box& swept) const { return !boxes || boxes->may_meet(swept); }
 
     /// Returns the mean of the corners of an element.
-    static Vec3 centre(const topology::Mesh& mesh, ElementId e, std::span<const Vec3> positions) {
+    static Vec3 centre(const topology::Mesh& mesh, CellId e, std::span<const Vec3> positions) {
         Vec3 sum = Vec3::Zero();
         const auto corners = mesh.corners(e);
         for (const auto n : corners) sum += positions[n.index()];
@@ -46,7 +46,7 @@ struct TissueMotion {
     }
 
     /// Returns a box that contains the element throughout the step.
-    Box box(ElementId e) const {
+    Box box(CellId e) const {
         Box box;
         for (const auto n : mesh.corners(e)) {
             box.extend(before[n.index()]);

@@ -60,16 +60,16 @@ bool meets(const CarverShape& shape, const Vec3& a, const Vec3& b) {
     return std::visit(Meets{a, b}, shape);
 }
 
-std::vector<ElementId> covered_elements(const TissueMotion& tissue, const CarverShape& shape,
-                                        const Pose& before, const Pose& after) {
+std::vector<CellId> covered_elements(const TissueMotion& tissue, const CarverShape& shape,
+                                     const Pose& before, const Pose& after) {
     Box swept(before.position);
     swept.extend(after.position);
     const Vec3 margin = Vec3::Constant(reach(shape));
     swept = Box(swept.min() - margin, swept.max() + margin);
 
-    std::vector<ElementId> covered;
+    std::vector<CellId> covered;
     const auto may_meet = [&](const Box& box) { return swept.intersects(box); };
-    tissue.for_each_near(may_meet, [&](ElementId e) {
+    tissue.for_each_near(may_meet, [&](CellId e) {
         const Vec3 from = before.to_tool(TissueMotion::centre(tissue.mesh, e, tissue.before));
         const Vec3 to = after.to_tool(TissueMotion::centre(tissue.mesh, e, tissue.after));
         if (meets(shape, from, to)) covered.push_back(e);

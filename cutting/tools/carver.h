@@ -21,7 +21,7 @@ bool meets(const CarverShape& shape, const Vec3& a, const Vec3& b);
 /// Returns the elements whose centre the shape covers at some time of the step, in ascending order.
 /// Tool and tissue both move. The path of a centre in the frame of the tool is taken as straight.
 /// Cost: proportional to the elements near the path of the tool if `tissue` has boxes, else O(n).
-std::vector<ElementId> covered_elements(const TissueMotion& tissue, const CarverShape& shape,
-                                        const Pose& before, const Pose& after);
+std::vector<CellId> covered_elements(const TissueMotion& tissue, const CarverShape& shape,
+                                     const Pose& before, const Pose& after);
 
 }  // namespace incise::cutting

@@ -25,8 +25,8 @@ std::array<double, topology::max_face_corners> intersection(const Mesh& mesh, Fa
     const auto at = [&](int p) -> const Vec3& {
         return mesh.rest_position(mesh.face_corner(f, p));
     };
-    const Vec3 from = TissueMotion::centre(mesh, f.element, mesh.rest_positions());
-    const Vec3 to = TissueMotion::centre(mesh, mesh.neighbor(f).element, mesh.rest_positions());
+    const Vec3 from = TissueMotion::centre(mesh, f.cell, mesh.rest_positions());
+    const Vec3 to = TissueMotion::centre(mesh, mesh.neighbor(f).cell, mesh.rest_positions());
     // The weight of a corner is proportional to the volume that the line spans with the opposite
     // edge.
     const auto volume = [&](int i, int j) {
@@ -68,22 +68,22 @@ bool is_crossed(const MovingPoint& p, const MovingPoint& q, std::span<const Vec3
 /// leads through it. An element that had one neighbour only in the input mesh is no sliver, and may
 /// be separated.
 void leave_no_slivers(const Mesh& mesh, std::vector<FaceId>& faces) {
-    std::map<ElementId, int> num_joined;
-    const auto joined = [&](ElementId e) -> int& {
+    std::map<CellId, int> num_joined;
+    const auto joined = [&](CellId e) -> int& {
         const auto [place, is_new] = num_joined.try_emplace(e, 0);
         if (is_new)
             for (int f = 0; f < mesh.num_faces(e); ++f)
                 place->second += mesh.neighbor({e, f}).is_valid();
         return place->second;
     };
-    const auto is_sliver = [&](ElementId e) {
+    const auto is_sliver = [&](CellId e) {
         int num_inside = 0;
         for (int f = 0; f < mesh.num_faces(e); ++f) num_inside += mesh.was_inside({e, f});
         return joined(e) == 1 && num_inside > 1;
     };
     std::vector<FaceId> kept;
     for (const FaceId f : faces) {
-        const ElementId here = f.element, there = mesh.neighbor(f).element;
+        const CellId here = f.cell, there = mesh.neighbor(f).cell;
         if (is_sliver(here) != is_sliver(there)) continue;
         --joined(here);
         --joined(there);
@@ -101,26 +101,26 @@ std::vector<FaceId> faces_to_open(const TissueMotion& tissue, std::span<const Ve
     for (const Vec3& x : before) swept.extend(x);
     for (const Vec3& x : after) swept.extend(x);
 
-    const auto centre = [&](ElementId e) {
+    const auto centre = [&](CellId e) {
         return MovingPoint{TissueMotion::centre(mesh, e, tissue.before),
                            TissueMotion::centre(mesh, e, tissue.after)};
     };
     std::vector<FaceId> faces;
     // If a path is crossed, one of its halves is, and each half is in one of the two elements.
     const auto may_meet = [&](const Box& box) { return swept.intersects(box); };
-    tissue.for_each_near(may_meet, [&](ElementId e) {
+    tissue.for_each_near(may_meet, [&](CellId e) {
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             const FaceId face{e, f}, other = mesh.neighbor(face);
             if (!other.is_valid()) continue;
             // If both elements are near the blade, the face is examined from its lower side only.
-            if (other < face && swept.intersects(tissue.box(other.element))) continue;
+            if (other < face && swept.intersects(tissue.box(other.cell))) continue;
             const FaceId lower = std::min(face, other), higher = std::max(face, other);
             // From the lower side, so that sums always have the same order.
             const auto weights = intersection(mesh, lower);
             const MovingPoint middle = {on_face(mesh, lower, weights, tissue.before),
                                         on_face(mesh, lower, weights, tissue.after)};
-            const bool is_odd = is_crossed(centre(lower.element), middle, before, after) !=
-                                is_crossed(middle, centre(higher.element), before, after);
+            const bool is_odd = is_crossed(centre(lower.cell), middle, before, after) !=
+                                is_crossed(middle, centre(higher.cell), before, after);
             if (is_odd) faces.push_back(lower);
         }
     });

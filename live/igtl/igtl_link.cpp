@@ -438,7 +438,7 @@ void IgtlLink::look(const Session& session, const DisplayMesh& mesh) {
         auto made = std::make_shared<Parts::Surface>();
         const auto positions = session.world().positions();
         made->points.reserve(mesh.nodes().size() * 3);
-        for (const NodeId n : mesh.nodes())
+        for (const VertexId n : mesh.nodes())
             for (int i = 0; i < 3; ++i)
                 made->points.push_back(static_cast<float>(positions[n.index()][i] / mm));
         made->triangles.assign(mesh.triangles().begin(), mesh.triangles().end());

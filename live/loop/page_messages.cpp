@@ -36,7 +36,7 @@ PageMessages::PageMessages(const Session& session, const PictureMaker& pictures)
 std::string PageMessages::hello(bool is_operator) const {
     const topology::Mesh& mesh = session_.world().mesh();
     Eigen::AlignedBox3d box;  // at rest: pieces may be far away by now
-    for (const NodeId n : mesh.nodes()) box.extend(mesh.rest_position(n));
+    for (const VertexId n : mesh.nodes()) box.extend(mesh.rest_position(n));
     Json hello = {{"type", "hello"},
                   {"title", session_.simulation().scenario().title},
                   {"tick", session_.tick_length()},

@@ -61,7 +61,7 @@ const DisplayMesh& PictureMaker::follow(Session& session) {
     mesh_.take(surface, world.mesh());
     values_.clear();
     rest_.clear();
-    for (const NodeId n : mesh_.nodes()) append(rest_, world.mesh().rest_position(n));
+    for (const VertexId n : mesh_.nodes()) append(rest_, world.mesh().rest_position(n));
     std::string bytes;
     bytes.reserve(mesh_.triangles().size_bytes() + rest_.size() * 4 + mesh_.tags().size_bytes());
     append(bytes, mesh_.triangles());
@@ -82,7 +82,7 @@ void PictureMaker::add_values(const Session& session, std::string& bytes) {
     std::size_t count = is_of_nodes || values_.empty() ? nodes.size() : most_elements;
     values_.resize(nodes.size());
     const auto value = [&](std::size_t i) {
-        const NodeId n = nodes[i];
+        const VertexId n = nodes[i];
         if (name == "displacement")
             return (world.positions()[n.index()] - world.mesh().rest_position(n)).norm();
         if (name == "speed") return world.velocities()[n.index()].norm();
@@ -127,7 +127,7 @@ std::shared_ptr<Picture> PictureMaker::make(Session& session) {
     picture->head_with_topology = header(has_topology, mesh_.triangles().size());
     picture->head_without_topology = header(0, 0);
     moving_.clear();
-    for (const NodeId n : nodes) append(moving_, positions[n.index()] - origin);
+    for (const VertexId n : nodes) append(moving_, positions[n.index()] - origin);
     std::string& moving = picture->moving;
     moving.reserve(nodes.size() * 16);
     append(moving, std::span<const float>(moving_));

@@ -24,7 +24,7 @@ BodyArrays body_arrays(const Model& model) {
         for (const NodeId n : fragments.corners(e)) corners.push_back(row_of_node[n.index()]);
         arrays.mesh.add_cell(fragments.kind(e), corners, fragments.region(e));
     }
-    for (const ElementId e : model.mesh().elements())
+    for (const CellId e : model.mesh().elements())
         arrays.cell_of_element.push_back(row_of_fragment[fragments.fragment_of_cell(e).index()]);
     return arrays;
 }

@@ -53,10 +53,10 @@ void Constraint::require_fit(const topology::Mesh& mesh) const {
         if (!pose.is_sound()) throw InputError("the pose of a grip is none");
 }
 
-Constraint make_grip(std::string name, std::vector<NodeId> nodes, const Pose& pose) {
+Constraint make_grip(std::string name, std::vector<VertexId> nodes, const Pose& pose) {
     Constraint constraint;
     constraint.name = std::move(name);
-    constraint.nodes = NodeSet(std::move(nodes));
+    constraint.nodes = VertexSet(std::move(nodes));
     constraint.grip = TimeCurve<Pose>({{0.0, pose}});
     return constraint;
 }
@@ -69,7 +69,7 @@ std::vector<ConstraintConflict> find_conflicts(const topology::Mesh& mesh,
     std::vector<std::size_t> last_second(constraints.size(), nobody);  // found with each first one
     std::vector<ConstraintConflict> conflicts;
     for (std::size_t s = 0; s < constraints.size(); ++s)
-        for (const NodeSet::Member& member : constraints[s].nodes.members())
+        for (const VertexSet::Member& member : constraints[s].nodes.members())
             for (std::size_t c = 0; c < 3 && mesh.is_alive(member.node); ++c) {
                 if (!constraints[s].components[c]) continue;
                 std::size_t& first = first_of[member.node.index()][c];
@@ -107,13 +107,13 @@ void Constraints::require_agreement(const topology::Mesh& mesh) const {
 }
 
 template <class Visit>
-void Constraints::for_each_corner(const Body& body, NodeId member, Visit visit) {
+void Constraints::for_each_corner(const Body& body, VertexId member, Visit visit) {
     const auto& [mesh, fragments] = body;
     if (!mesh.is_alive(member)) return;
-    std::vector<ElementId> cells;
+    std::vector<CellId> cells;
     mesh.star(member, cells);
-    for (const ElementId cell : cells) {
-        const ElementId carrier = fragments.carrier_of_cell(cell);
+    for (const CellId cell : cells) {
+        const CarrierId carrier = fragments.carrier_of_cell(cell);
         const auto origins = fragments.origins_of(carrier);
         const auto weights = fragments.weights_in_carrier(carrier, mesh.rest_position(member));
         for (const NodeId n : fragments.corners(fragments.fragment_of_cell(cell))) {
@@ -128,16 +128,16 @@ bool Constraints::does_prescribe(std::size_t constraint, const Body& body, NodeI
     const auto& [mesh, fragments] = body;
     const NodeId origin = fragments.origin(n);
     if (!std::ranges::binary_search(origins_[constraint], origin)) return false;
-    const NodeSet& nodes = constraints_[constraint].nodes;
+    const VertexSet& nodes = constraints_[constraint].nodes;
     std::vector<ElementId> star;
     fragments.star(n, star);
     for (const ElementId e : star)
-        for (const ElementId cell : fragments.cells_of(e)) {
-            const ElementId carrier = fragments.carrier_of_cell(cell);
+        for (const CellId cell : fragments.cells_of(e)) {
+            const CarrierId carrier = fragments.carrier_of_cell(cell);
             const auto origins = fragments.origins_of(carrier);
             const auto k = std::ranges::find(origins, origin) - origins.begin();
             if (k == std::ssize(origins)) continue;
-            for (const NodeId corner : mesh.corners(cell))
+            for (const VertexId corner : mesh.corners(cell))
                 if (nodes.contains(corner) &&
                     fragments.weights_in_carrier(
                         carrier, mesh.rest_position(corner))[static_cast<std::size_t>(k)] >
@@ -153,7 +153,7 @@ void Constraints::index_all(const Body& body, std::span<const Vec3> positions) {
     origins_.assign(constraints_.size(), {});
     std::vector<NodeId> prescribed;
     for (std::size_t s = 0; s < constraints_.size(); ++s) {
-        for (const NodeSet::Member& member : constraints_[s].nodes.members())
+        for (const VertexSet::Member& member : constraints_[s].nodes.members())
             for_each_corner(body, member.node, [&](NodeId n) {
                 prescribed.push_back(n);
                 origins_[s].push_back(body.fragments.origin(n));
@@ -227,8 +227,8 @@ void Constraints::prescribe(const std::array<int, 3>& constraint_of,
 }
 
 void Constraints::apply(const Body& body, const topology::ChangeSet& of_mesh,
-                        const topology::ChangeSet& of_fragments, std::span<const NodeId> touched,
-                        std::span<const Vec3> positions) {
+                        const topology::FragmentMeshChanges& of_fragments,
+                        std::span<const NodeId> touched, std::span<const Vec3> positions) {
     for (Constraint& constraint : constraints_) {
         constraint.nodes.apply(body.mesh, of_mesh);
         auto& gripped = constraint.gripped;

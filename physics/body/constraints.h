@@ -11,8 +11,8 @@
 
 #include "incise/base/error.h"
 #include "incise/base/types.h"
-#include "incise/physics/body/node_set.h"
 #include "incise/physics/body/time_curve.h"
+#include "incise/physics/body/vertex_set.h"
 #include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/pose.h"
@@ -28,7 +28,7 @@ namespace incise::physics {
 /// none of the mesh: see Constraints.
 struct Constraint {
     std::string name = {};
-    NodeSet nodes = {};
+    VertexSet nodes = {};
     std::array<bool, 3> components{true, true, true};  ///< which of x, y and z are prescribed
     TimeCurve<Vec3> displacement = {};                 ///< u, m; empty: none
     TimeCurve<double> angle = {};                      ///< of R, rad, about the axis; empty: none
@@ -55,11 +55,11 @@ struct Constraint {
 /// @param name   the name of the constraint
 /// @param nodes  the nodes to grasp
 /// @param pose   the pose of the frame of the grasp when it is added
-Constraint make_grip(std::string name, std::vector<NodeId> nodes, const Pose& pose);
+Constraint make_grip(std::string name, std::vector<VertexId> nodes, const Pose& pose);
 
 /// Two constraints that prescribe different values of the same component of a node.
 struct ConstraintConflict {
-    NodeId node;
+    VertexId node;
     std::size_t component;
     std::size_t first, second;  ///< indices of the constraints, in ascending order
 };
@@ -143,7 +143,7 @@ class Constraints {
     /// @param positions     current, m, by node of the fragments
     /// Cost: proportional to the touched nodes; for the undo of an edit as for a new object.
     void apply(const Body& body, const topology::ChangeSet& of_mesh,
-               const topology::ChangeSet& of_fragments, std::span<const NodeId> touched,
+               const topology::FragmentMeshChanges& of_fragments, std::span<const NodeId> touched,
                std::span<const Vec3> positions);
 
   private:
@@ -151,7 +151,7 @@ class Constraints {
     /// Calls visit(n) for each node of the fragments on which a node of the mesh depends; some of
     /// them more than once.
     template <class Visit>
-    static void for_each_corner(const Body& body, NodeId member, Visit visit);
+    static void for_each_corner(const Body& body, VertexId member, Visit visit);
     bool does_prescribe(std::size_t constraint, const Body& body, NodeId n) const;
     void index(const Body& body, NodeId n);
     void index_all(const Body& body, std::span<const Vec3> positions);

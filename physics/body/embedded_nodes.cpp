@@ -11,7 +11,7 @@ using topology::Mesh;
 
 EmbeddedNodes::EmbeddedNodes(const Mesh& mesh, const FragmentMesh& fragments)
     : of_node_(mesh.node_capacity()) {
-    for (const NodeId n : mesh.nodes()) find(mesh, fragments, n);
+    for (const VertexId n : mesh.nodes()) find(mesh, fragments, n);
 }
 
 namespace {
@@ -27,7 +27,7 @@ double gain(const topology::Embedding& at) {
 
 }  // namespace
 
-void EmbeddedNodes::set(NodeId n, const topology::Embedding& at) {
+void EmbeddedNodes::set(VertexId n, const topology::Embedding& at) {
     topology::Embedding& known = of_node_[n.index()];
     num_embedded_ -= is_embedded(n.index()) ? 1 : 0;
     if (const double before = gain(known); before > 1.0) gains_.erase(gains_.find(before));
@@ -36,17 +36,17 @@ void EmbeddedNodes::set(NodeId n, const topology::Embedding& at) {
     num_embedded_ += is_embedded(n.index()) ? 1 : 0;
 }
 
-void EmbeddedNodes::find(const Mesh& mesh, const FragmentMesh& fragments, NodeId n) {
+void EmbeddedNodes::find(const Mesh& mesh, const FragmentMesh& fragments, VertexId n) {
     set(n, mesh.is_alive(n) ? fragments.embedding(mesh, n) : topology::Embedding());
 }
 
 void EmbeddedNodes::apply(const Mesh& mesh, const FragmentMesh& fragments, const BodyEdit& edit,
                           const topology::FragmentChanges& changes) {
     positions_.version = velocities_.version = 0;
-    for (std::size_t n = mesh.node_capacity(); n < of_node_.size(); ++n) set(NodeId(n), {});
+    for (std::size_t n = mesh.node_capacity(); n < of_node_.size(); ++n) set(VertexId(n), {});
     of_node_.resize(mesh.node_capacity());
-    std::vector<NodeId> touched(edit.touched_of_mesh.begin(), edit.touched_of_mesh.end());
-    const auto touch = [&](ElementId cell) {
+    std::vector<VertexId> touched(edit.touched_of_mesh.begin(), edit.touched_of_mesh.end());
+    const auto touch = [&](CellId cell) {
         const auto corners = mesh.corners(cell);
         touched.insert(touched.end(), corners.begin(), corners.end());
     };
@@ -56,10 +56,10 @@ void EmbeddedNodes::apply(const Mesh& mesh, const FragmentMesh& fragments, const
             touch(cell.cell);
     for (const topology::Rewiring& rewiring : changes.mesh.rewired)
         if (fragments.is_alive(rewiring.element))
-            for (const ElementId cell : fragments.cells_of(rewiring.element)) touch(cell);
+            for (const CellId cell : fragments.cells_of(rewiring.element)) touch(cell);
     std::sort(touched.begin(), touched.end());
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    for (const NodeId n : touched)
+    for (const VertexId n : touched)
         if (n.index() < of_node_.size()) find(mesh, fragments, n);
 }
 

@@ -29,7 +29,7 @@ class EmbeddedNodes {
                const BodyEdit& edit, const topology::FragmentChanges& changes);
 
     /// Returns the combination that a living node follows.
-    const topology::Embedding& operator[](NodeId n) const { return of_node_[n.index()]; }
+    const topology::Embedding& operator[](VertexId n) const { return of_node_[n.index()]; }
     /// True if each node of the mesh is the node of the fragments with the same id, as before any
     /// division. Positions and velocities are then those of the state.
     bool is_trivial() const { return num_embedded_ == 0; }
@@ -51,8 +51,8 @@ class EmbeddedNodes {
         std::uint64_t version = 0;  // of the state; 0: not known
         std::vector<Vec3> values;
     };
-    void set(NodeId n, const topology::Embedding& at);
-    void find(const topology::Mesh& mesh, const topology::FragmentMesh& fragments, NodeId n);
+    void set(VertexId n, const topology::Embedding& at);
+    void find(const topology::Mesh& mesh, const topology::FragmentMesh& fragments, VertexId n);
     bool is_embedded(std::size_t n) const {
         const topology::Embedding& at = of_node_[n];
         return at.count > 1 || (at.count == 1 && at.nodes[0] != NodeId(n));

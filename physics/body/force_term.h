@@ -25,7 +25,7 @@ struct BodyView {
     std::span<const double> masses;  ///< lumped, kg, by node of the fragments
 
     /// Returns the mass of an element of the mesh at each of its corners, kg.
-    double mass_at_corners(ElementId cell) const {
+    double mass_at_corners(CellId cell) const {
         const ElementId e = fragments.fragment_of_cell(cell);
         if (fragments.cells_of(e).size() == 1 && fragments.share(e) == 1.0)
             return elements.block_of(fragments, e).contributions(e).mass;
@@ -37,9 +37,9 @@ struct BodyView {
 /// An edit of a body: that of its mesh, and what it changed in the fragments.
 struct BodyEdit {
     const topology::ChangeSet& of_mesh;
-    const topology::ChangeSet& of_fragments;
-    /// In ascending order, the nodes of the mesh at elements that have changed.
-    std::span<const NodeId> touched_of_mesh;
+    const topology::FragmentMeshChanges& of_fragments;
+    /// In ascending order, the vertices of the mesh at cells that have changed.
+    std::span<const VertexId> touched_of_mesh;
     /// In ascending order, the nodes of the fragments whose mass may have changed.
     std::span<const NodeId> touched;
 };

@@ -13,13 +13,13 @@ namespace incise::physics {
 namespace {
 
 bool is_on_boundary(const topology::Mesh& mesh, FaceId f) {
-    return f.element.index() < mesh.element_capacity() && mesh.is_alive(f.element) &&
+    return f.cell.index() < mesh.element_capacity() && mesh.is_alive(f.cell) &&
            !mesh.neighbor(f).is_valid();
 }
 
 /// Returns a face of a cell, in the fragment that carries the cell.
 PressedFace face_in_fragment(const BodyView& body, FaceId f) {
-    const ElementId fragment = body.fragments.fragment_of_cell(f.element);
+    const ElementId fragment = body.fragments.fragment_of_cell(f.cell);
     PressedFace face;
     face.num_corners = static_cast<std::size_t>(body.mesh.face_size(f));
     for (std::size_t p = 0; p < face.num_corners; ++p)
@@ -94,7 +94,7 @@ struct ShareFinder {
             double volume = 0.0;  // m3
         };
         std::map<ElementId, Loaded> loaded;  // by fragment
-        for (const ElementId cell : load.elements.members()) {
+        for (const CellId cell : load.elements.members()) {
             if (cell.index() >= body.mesh.element_capacity() || !body.mesh.is_alive(cell)) continue;
             Loaded& fragment = loaded[body.fragments.fragment_of_cell(cell)];
             ++fragment.num_cells;
@@ -204,21 +204,21 @@ double factor_of(const Load& load, double time) {
 }
 
 /// Returns the mass of the material at a node of the mesh, lumped, kg.
-double mass_at(const BodyView& body, NodeId n) {
+double mass_at(const BodyView& body, VertexId n) {
     double mass = 0.0;
-    std::vector<ElementId> star;
+    std::vector<CellId> star;
     body.mesh.star(n, star);
-    for (const ElementId cell : star) mass += body.mass_at_corners(cell);
+    for (const CellId cell : star) mass += body.mass_at_corners(cell);
     return mass;
 }
 
 // Computes the shares again for every family of copies with a member among `touched`. A family has
 // all copies of one node of the first selection.
-void share(NodalLoad& load, const BodyView& body, std::span<const NodeId> touched) {
+void share(NodalLoad& load, const BodyView& body, std::span<const VertexId> touched) {
     const auto& members = load.nodes.members();
     load.shares.resize(members.size(), 0.0);
-    std::map<NodeId, double> family_mass;
-    for (const NodeId n : touched)
+    std::map<VertexId, double> family_mass;
+    for (const VertexId n : touched)
         if (const auto* member = load.nodes.find(n); member && member->origin.is_valid())
             family_mass[member->origin] = 0.0;
     if (family_mass.empty()) return;
@@ -273,7 +273,7 @@ Loads::Loads(const Vec3& gravity, std::vector<Load> loads, const BodyView& body)
 void Loads::share_out(Load& load, const BodyView& body) {
     auto* nodal = std::get_if<NodalLoad>(&load.kind);
     if (!nodal || !nodal->shares.empty()) return;
-    std::vector<NodeId> all;
+    std::vector<VertexId> all;
     for (const auto& member : nodal->nodes.members()) all.push_back(member.node);
     share(*nodal, body, all);
 }

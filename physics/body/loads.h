@@ -9,10 +9,10 @@
 #include <variant>
 #include <vector>
 
-#include "incise/physics/body/element_set.h"
+#include "incise/physics/body/cell_set.h"
 #include "incise/physics/body/force_term.h"
-#include "incise/physics/body/node_set.h"
 #include "incise/physics/body/time_curve.h"
+#include "incise/physics/body/vertex_set.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::physics {
@@ -22,7 +22,7 @@ namespace incise::physics {
 /// copies apart. A new node between selected nodes has no share, so that the total force and its
 /// distribution stay the same.
 struct NodalLoad {
-    NodeSet nodes = {};
+    VertexSet nodes = {};
     Vec3 force = Vec3::Zero();        ///< N, on each node of the first selection
     std::vector<double> shares = {};  ///< of the force, by member; maintained by Loads
     static void archive(auto& ar, auto& self) { ar(self.nodes, self.force, self.shares); }
@@ -44,7 +44,7 @@ struct PressureLoad {
 
 /// A force per rest volume of elements.
 struct BodyLoad {
-    ElementSet elements = {};
+    CellSet elements = {};
     Vec3 force = Vec3::Zero();  ///< N/m3
     static void archive(auto& ar, auto& self) { ar(self.elements, self.force); }
 };

@@ -18,7 +18,7 @@ namespace {
 
 double diagonal(const topology::Mesh& mesh) {
     Eigen::AlignedBox3d box;
-    for (const NodeId n : mesh.nodes()) box.extend(mesh.rest_position(n));
+    for (const VertexId n : mesh.nodes()) box.extend(mesh.rest_position(n));
     return box.diagonal().norm();
 }
 
@@ -39,12 +39,12 @@ BoundaryConditions read_boundary_conditions(const topology::Mesh& mesh, ArchiveR
 }
 
 /// Returns the nodes of all constraints but grasps, which come and go.
-std::vector<NodeId> held_by(const topology::Mesh& mesh, std::span<const Constraint> constraints) {
-    std::vector<NodeId> nodes;
+std::vector<VertexId> held_by(const topology::Mesh& mesh, std::span<const Constraint> constraints) {
+    std::vector<VertexId> nodes;
     for (const Constraint& constraint : constraints) {
         constraint.require_fit(mesh);
         if (!constraint.grip.is_empty()) continue;
-        for (const NodeSet::Member& member : constraint.nodes.members())
+        for (const VertexSet::Member& member : constraint.nodes.members())
             nodes.push_back(member.node);
     }
     return nodes;
@@ -65,7 +65,7 @@ Model::Parts::Parts(const topology::Mesh& mesh, const MaterialTable& of_mesh,
     if (table.fibres.empty()) return;
     table.fibres.resize(fragments.element_capacity(), Vec3::Zero());
     for (const ElementId e : fragments.elements())
-        for (const ElementId cell : fragments.cells_of(e))
+        for (const CellId cell : fragments.cells_of(e))
             if (fragments.is_at_home(cell)) {
                 table.fibres[e.index()] = of_mesh.fibres[cell.index()];
                 break;
@@ -188,10 +188,14 @@ void Model::remove_load(std::size_t i) {
 void Model::add_force_term(std::unique_ptr<ForceTerm> term) {
     term->update(view());
     for (const NodeId n : fragments_.nodes())
-        if (const double bound = term->stiffness_bound(n); !(bound >= 0.0 && std::isfinite(bound)))
-            throw InputError("a force term bounds its stiffness at node " +
-                             std::to_string(mesh_.label(fragments_.origin(n))) + " by " +
-                             std::to_string(bound) + " N/m: it must be finite, and 0 or more");
+        if (const double bound = term->stiffness_bound(n);
+            !(bound >= 0.0 && std::isfinite(bound))) {
+            std::ostringstream text;
+            text << "a force term bounds its stiffness at the node that is at rest at "
+                 << fragments_.rest_position(n).transpose() << " by " << bound
+                 << " N/m: it must be finite, and 0 or more";
+            throw InputError(text.str());
+        }
     added_terms_.push_back(std::move(term));
     for (const NodeId n : fragments_.nodes()) gather(n);
     ++structure_version_;
@@ -295,9 +299,9 @@ double Model::element_stable_step(ElementId e) const {
 
 std::vector<double> Model::mesh_masses() const {
     std::vector<double> masses(mesh_.node_capacity(), 0.0);
-    for (const ElementId e : mesh_.elements()) {
+    for (const CellId e : mesh_.elements()) {
         const double mass = view().mass_at_corners(e);
-        for (const NodeId n : mesh_.corners(e)) masses[n.index()] += mass;
+        for (const VertexId n : mesh_.corners(e)) masses[n.index()] += mass;
     }
     return masses;
 }
@@ -305,7 +309,7 @@ std::vector<double> Model::mesh_masses() const {
 std::vector<Vec3> Model::mesh_elastic_forces() const {
     const std::vector<double> masses = mesh_masses();
     std::vector<Vec3> forces(masses.size(), Vec3::Zero());
-    for (const NodeId n : mesh_.nodes()) {
+    for (const VertexId n : mesh_.nodes()) {
         const topology::Embedding& at = embedded_[n];
         for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k) {
             const std::size_t node = at.nodes[k].index();

@@ -321,11 +321,10 @@ class Model {
     /// Returns the stable step of one fragment if its nodes had no other one, s.
     double element_stable_step(ElementId e) const;
 
-    /// Returns an element of the mesh at the node that sets the stable step.
-    ElementId limiting_element() const {
+    /// Returns a cell of the mesh at the node that sets the stable step.
+    CellId limiting_cell() const {
         const NodeId n(stable_step_.limiting_node());
-        const ElementId e = fragments_.incident_element(n);
-        return fragments_.cells_of(e).front();
+        return fragments_.cells_of(fragments_.incident_element(n)).front();
     }
     /// Returns the sum of modulus times rest volume over the elements, J. This is the order of the
     /// elastic energy at a strain of one. Rounding errors of the elastic energy are small against

@@ -12,27 +12,29 @@ namespace incise::physics {
 using topology::ChangeSet;
 using topology::FragmentChanges;
 using topology::FragmentMesh;
-using topology::NodeRecord;
+using topology::FragmentMeshChanges;
+using topology::MeshChanges;
 
 namespace {
 
-void make_sorted_set(std::vector<NodeId>& nodes) {
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+template <class Id>
+void make_sorted_set(std::vector<Id>& ids) {
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
 }
 
 /// Returns the nodes at elements that an edit has changed, in ascending order. `mesh` is a Mesh or
 /// a FragmentMesh after the edit.
-template <class Mesh>
-std::vector<NodeId> touched_nodes(const Mesh& mesh, const ChangeSet& changes) {
-    std::vector<NodeId> touched;
-    const auto touch = [&](std::span<const NodeId> nodes) {
+template <class Mesh, class Node, class Element>
+std::vector<Node> touched_nodes(const Mesh& mesh, const MeshChanges<Node, Element>& changes) {
+    std::vector<Node> touched;
+    const auto touch = [&](std::span<const Node> nodes) {
         touched.insert(touched.end(), nodes.begin(), nodes.end());
     };
-    const auto touch_all_of = [&](const topology::ElementRecord& record) {
+    const auto touch_all_of = [&](const auto& record) {
         touch(record.corners);
         // A division, or the undo of one, also changes the shape and mass of the parent.
-        const ElementId parent = record.parent;
+        const Element parent = record.parent;
         if (parent.is_valid() && parent.index() < changes.element_capacity_after)
             touch(mesh.corners(parent));
     };
@@ -42,7 +44,7 @@ std::vector<NodeId> touched_nodes(const Mesh& mesh, const ChangeSet& changes) {
         touched.push_back(rewiring.from);
         touched.push_back(rewiring.to);
     }
-    for (const NodeRecord& record : changes.nodes_removed) {
+    for (const auto& record : changes.nodes_removed) {
         touched.push_back(record.id);
         // State::apply has added the mass of a merged node to that of its survivor. The mass of the
         // survivor must be summed again, even if its elements have been separated from it since.
@@ -50,7 +52,7 @@ std::vector<NodeId> touched_nodes(const Mesh& mesh, const ChangeSet& changes) {
     }
     make_sorted_set(touched);
     touched.erase(
-        std::lower_bound(touched.begin(), touched.end(), NodeId(changes.node_capacity_after)),
+        std::lower_bound(touched.begin(), touched.end(), Node(changes.node_capacity_after)),
         touched.end());
     return touched;
 }
@@ -58,7 +60,7 @@ std::vector<NodeId> touched_nodes(const Mesh& mesh, const ChangeSet& changes) {
 /// Returns the nodes of the fragments whose mass or stiffness an edit may have changed, in
 /// ascending order.
 std::vector<NodeId> touched_nodes(const FragmentMesh& fragments, const FragmentChanges& changes,
-                                  const ChangeSet& of_fragments) {
+                                  const FragmentMeshChanges& of_fragments) {
     std::vector<NodeId> touched = touched_nodes(fragments, of_fragments);
     for (const topology::ShareChange& change : changes.shares) {
         const auto corners = fragments.corners(change.fragment);
@@ -71,7 +73,7 @@ std::vector<NodeId> touched_nodes(const FragmentMesh& fragments, const FragmentC
 }  // namespace
 
 void Model::edit_elements(const BodyEdit& edit, const FragmentChanges& changes) {
-    const ChangeSet& of_fragments = edit.of_fragments;
+    const FragmentMeshChanges& of_fragments = edit.of_fragments;
     elements_.apply(fragments_, of_fragments);
     for (const auto& record : of_fragments.elements_removed)
         elements_.erase(record.id, record.region);
@@ -80,8 +82,7 @@ void Model::edit_elements(const BodyEdit& edit, const FragmentChanges& changes) 
     for (const topology::Rewiring& rewiring : of_fragments.rewired)
         changed.push_back(rewiring.element);
     for (const topology::ShareChange& change : changes.shares) changed.push_back(change.fragment);
-    std::sort(changed.begin(), changed.end());
-    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    make_sorted_set(changed);
     for (const ElementId e : changed) elements_.replace(fragments_, e);
 }
 
@@ -112,7 +113,8 @@ void Model::undo(const topology::Mesh& mesh, const ChangeSet& changes, const Mod
     if (!has_moved)
         for (const ModelChanges::Velocity& change : done.velocities)
             state_.set_velocity(change.node, change.before);
-    const ChangeSet of_mesh = inverse(changes), of_fragments = inverse(done.fragments.mesh);
+    const ChangeSet of_mesh = inverse(changes);
+    const FragmentMeshChanges of_fragments = inverse(done.fragments.mesh);
     const auto touched_of_mesh = touched_nodes(mesh, of_mesh);
     const auto touched = touched_nodes(fragments_, done.fragments, of_fragments);
     follow({of_mesh, of_fragments, touched_of_mesh, touched}, done.fragments);
@@ -120,7 +122,7 @@ void Model::undo(const topology::Mesh& mesh, const ChangeSet& changes, const Mod
 
 void Model::follow(const BodyEdit& edit, const FragmentChanges& changes) {
     ++structure_version_;
-    const ChangeSet& of_fragments = edit.of_fragments;
+    const FragmentMeshChanges& of_fragments = edit.of_fragments;
     resize(std::max(of_fragments.node_capacity_before, of_fragments.node_capacity_after));
     state_.apply(fragments_, of_fragments, masses_);
     edit_elements(edit, changes);
@@ -142,21 +144,21 @@ Momenta Model::momenta_of(std::span<const NodeId> nodes) const {
     return sum;
 }
 
-/// Returns the momenta of the elements of the mesh that an edit is about to remove from the model,
+/// Returns the momenta of the cells that an edit is about to remove from the model,
 /// about the origin.
 Momenta Model::momenta_of_removed(const ChangeSet& changes) const {
-    std::map<ElementId, double> volumes;  // removed, m3, by element before the edit
+    std::map<CellId, double> volumes;  // removed, m3, by cell before the edit
     std::vector<Vec3> x;
-    const auto volume_of = [&](const topology::ElementRecord& record) {
+    const auto volume_of = [&](const topology::CellRecord& record) {
         x.clear();
-        for (const NodeId n : record.corners) x.push_back(mesh_.rest_position(n));
+        for (const VertexId n : record.corners) x.push_back(mesh_.rest_position(n));
         return topology::signed_volume(record.kind, x);
     };
     for (const auto& record : changes.elements_removed) volumes[record.id] = volume_of(record);
     // Parts of an element that was divided before it was removed are still there.
     if (!volumes.empty()) {
-        std::map<ElementId, ElementId> ancestors;
-        topology::for_each_part(changes, [&](ElementId parent, ElementId part) {
+        std::map<CellId, CellId> ancestors;
+        topology::for_each_part(changes, [&](CellId parent, CellId part) {
             const auto known = ancestors.find(parent);
             ancestors[part] = known == ancestors.end() ? parent : known->second;
         });

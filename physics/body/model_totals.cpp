@@ -81,7 +81,7 @@ double Model::volume_change() const {
 double Model::max_displacement() const {
     double largest = 0.0;
     const auto x = mesh_positions();
-    for (const NodeId n : mesh_.nodes())
+    for (const VertexId n : mesh_.nodes())
         largest = std::max(largest, (x[n.index()] - mesh_.rest_position(n)).norm());
     return largest;
 }

@@ -83,11 +83,11 @@ MotionFailure failure_of_step(const Model& model, double time, double dt) {
     const auto [n, speed] = lost_node(model);
     const topology::Mesh& mesh = model.mesh();
     const topology::FragmentMesh& fragments = model.fragments();
-    const ElementId fragment = fragments.incident_element(n),
-                    e = fragments.cells_of(fragment).front();
-    const NodeId origin = fragments.origin(n);
+    const CellId cell = fragments.cells_of(fragments.incident_element(n)).front();
+    const VertexId vertex = fragments.vertex_of_origin(mesh, n);
     std::ostringstream text;
-    text << "element " << mesh.label(e) << ", node " << mesh.label(origin) << " (at rest at "
+    text << "element " << mesh.label(cell) << ", node "
+         << (vertex.is_valid() ? std::to_string(mesh.label(vertex)) + " " : "") << "(at rest at "
          << fragments.rest_position(n).transpose() << ") ";
     if (std::isfinite(speed))
         text << "moved by " << speed * dt << " m in the step from t = " << time
@@ -97,8 +97,8 @@ MotionFailure failure_of_step(const Model& model, double time, double dt) {
     text << "; likely cause: ";
     const FailureCause cause = find_cause(model, n, dt, text);
     MotionFailure failure(cause, text.str());
-    failure.element = e;
-    failure.node = origin;
+    failure.cell = cell;
+    failure.vertex = vertex;
     return failure;
 }
 

@@ -11,7 +11,7 @@ namespace incise::physics {
 
 class Model;
 
-/// The most likely cause of a failure. The lost node is MotionFailure::node.
+/// The most likely cause of a failure. The lost node is MotionFailure::vertex.
 enum class FailureCause {
     step_above_bound,       ///< an explicit step was above the stable step
     constraint_too_fast,    ///< a constraint moved the lost node
@@ -29,8 +29,8 @@ enum class FailureCause {
 struct MotionFailure : PhysicsError {
     MotionFailure(FailureCause why, const std::string& text) : PhysicsError(text), cause(why) {}
     FailureCause cause;
-    ElementId element = {};  ///< an element at the failure; invalid if not known
-    NodeId node = {};        ///< the node that is not finite or moved too far; invalid if none
+    CellId cell = {};      ///< a cell at the failure; invalid if not known
+    VertexId vertex = {};  ///< the one that is not finite or moved too far; invalid if none
 };
 
 /// Returns the failure of an explicit step after which the state is not finite or a node has moved

@@ -16,8 +16,8 @@ namespace {
 
 /// One element at one of its edges.
 struct Wedge {
-    NodeId a, b;  // a < b
-    ElementId element;
+    VertexId a, b;  // a < b
+    CellId element;
     double angle;  // dihedral, rad; not a number for a flat or inverted element
 };
 
@@ -35,7 +35,7 @@ Winding find_winding(const topology::Mesh& mesh, std::span<const Vec3> positions
         {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}}};
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     std::vector<Wedge> wedges;
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         if (mesh.kind(e) != topology::CellKind::tetrahedron) continue;
         const auto corners = mesh.corners(e);
         std::array<Vec3, 4> x;

@@ -18,7 +18,7 @@ namespace incise::physics {
 /// contact. This gives somewhat more than one turn at the cut front, which is below the limit.
 struct Winding {
     std::size_t num_edges = 0;
-    ElementId element;  ///< with the lowest id at such an edge; invalid if there is no edge
+    CellId element;  ///< with the lowest id at such an edge; invalid if there is no edge
 };
 
 /// Returns the winding at the given positions (m, by node id). Edges of flat or inverted elements

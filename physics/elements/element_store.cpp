@@ -83,7 +83,7 @@ ElementStore::ElementStore(const FragmentMesh& fragments, const topology::Mesh& 
 void ElementStore::require_law(const FragmentMesh& fragments, const topology::Mesh& mesh,
                                ElementId e) const {
     const int region = fragments.region(e);
-    const ElementId cell = fragments.cells_of(e).front();
+    const CellId cell = fragments.cells_of(e).front();
     const std::string name = "element " + std::to_string(mesh.label(cell));
     const auto refuse = [&](MaterialMisfit why, const std::string& text) {
         throw UnsuitableMaterial(cell, region, why, name + text);

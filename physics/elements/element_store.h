@@ -47,9 +47,9 @@ enum class MaterialMisfit {
 
 /// Thrown if a region has no material, or if its material does not suit one of its elements.
 struct UnsuitableMaterial : InputError {
-    UnsuitableMaterial(ElementId which, int of_region, MaterialMisfit why, const std::string& text)
-        : InputError(text), element(which), region(of_region), cause(why) {}
-    ElementId element;
+    UnsuitableMaterial(CellId which, int of_region, MaterialMisfit why, const std::string& text)
+        : InputError(text), cell(which), region(of_region), cause(why) {}
+    CellId cell;
     int region;
     MaterialMisfit cause;
 };
@@ -73,7 +73,8 @@ class ElementStore {
 
     /// Follows an edit with the values by element id: parts of a divided element inherit its
     /// fibres. It must be called before insert(), replace() and erase() for this edit.
-    void apply(const topology::FragmentMesh& fragments, const topology::ChangeSet& changes) {
+    void apply(const topology::FragmentMesh& fragments,
+               const topology::FragmentMeshChanges& changes) {
         if (fibres_) fibres_->apply(fragments, changes);
     }
 
@@ -207,7 +208,7 @@ class ElementStore {
     ElementInput input_of(const topology::FragmentMesh& fragments, ElementId e) const;
 
     MaterialTable table_;  // without the fibres
-    std::optional<topology::ElementField<Vec3>> fibres_;
+    std::optional<topology::ElementField<ElementId, Vec3>> fibres_;
     std::vector<std::shared_ptr<ElementBlock>> blocks_;  // by range of ids, then by material
     std::vector<std::size_t> changed_blocks_;            // since the nodes were numbered
     std::vector<std::vector<Piece>> ranges_;  // by range of nodes; in ascending order of blocks

@@ -8,7 +8,7 @@
 
 namespace incise::physics {
 
-using topology::ChangeSet;
+using topology::FragmentMeshChanges;
 using topology::NodeRecord;
 
 State::State(const topology::FragmentMesh& fragments, std::size_t history_size)
@@ -60,7 +60,7 @@ void State::take_from_sources(const NodeRecord& record) {
     velocities_[record.id.index()] = v;
 }
 
-void State::apply(const topology::FragmentMesh& fragments, const ChangeSet& changes,
+void State::apply(const topology::FragmentMesh& fragments, const FragmentMeshChanges& changes,
                   std::span<double> masses) {
     const std::size_t most_nodes =
         std::max(changes.node_capacity_before, changes.node_capacity_after);

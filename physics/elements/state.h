@@ -49,8 +49,8 @@ class State {
     /// @param masses     lumped, kg, by node id, before the edit; the mass of a merged node is
     /// added
     ///                   to that of its survivor
-    void apply(const topology::FragmentMesh& fragments, const topology::ChangeSet& changes,
-               std::span<double> masses);
+    void apply(const topology::FragmentMesh& fragments,
+               const topology::FragmentMeshChanges& changes, std::span<double> masses);
 
     /// Sets the velocity of a node, m/s, as a part of an edit. The version stays: results that
     /// depend on velocities must follow the edit themselves.

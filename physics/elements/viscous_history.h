@@ -53,7 +53,8 @@ class ViscousHistory {
     /// Follows an edit. Parts of a divided element inherit its values unchanged, since a linear
     /// element has the same stress everywhere. Elements that an undo brings back still have their
     /// values. Cost: proportional to the elements added.
-    void apply(const topology::FragmentMesh& fragments, const topology::ChangeSet& changes);
+    void apply(const topology::FragmentMesh& fragments,
+               const topology::FragmentMeshChanges& changes);
 
   private:
     void resize(std::size_t num_elements) { values_.resize(num_elements * size_, 0.0); }

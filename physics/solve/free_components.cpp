@@ -140,13 +140,12 @@ void require_equilibrium(const FragmentMesh& fragments, const topology::Mesh& me
     }
     const Vector6 moving = piece.modes * (piece.modes.transpose() * total);
     if (!(moving.norm() > tolerance * all)) return;
-    const ElementId fragment = fragments.incident_element(piece.nodes.front()),
-                    e = fragments.cells_of(fragment).front();
+    const CellId cell = fragments.cells_of(fragments.incident_element(piece.nodes.front())).front();
     const bool is_turned = moving.tail<3>().norm() > moving.head<3>().norm();
     std::ostringstream text;
     text << "no equilibrium: a piece of " << piece.num_elements
          << (piece.num_elements == 1 ? " element" : " elements") << " (one of them is element "
-         << mesh.label(e) << ", its middle is now at " << piece.centre.transpose()
+         << mesh.label(cell) << ", its middle is now at " << piece.centre.transpose()
          << ") is not held, and loads ";
     if (is_turned) {
         const Vec3 moment = piece.turns.transpose().inverse() * moving.tail<3>();
@@ -156,7 +155,7 @@ void require_equilibrium(const FragmentMesh& fragments, const topology::Mesh& me
         text << "push it with " << moving.head<3>().norm() << " N along "
              << moving.head<3>().normalized().transpose();
     MotionFailure failure(FailureCause::free_component_loaded, text.str());
-    failure.element = e;
+    failure.cell = cell;
     throw failure;
 }
 

@@ -140,23 +140,23 @@ TEST(GeometricCut, SeparatesElementsWhoseCentresThePlaneParts) {
             const CutTool tool = random_plane(box_of(mesh), random);
             const auto& [point, normal] = std::get<PlaneCut>(tool.kind);
             const cutting::Plane plane(point, normal);
-            const auto side = [&](ElementId e) {
+            const auto side = [&](CellId e) {
                 return plane.side(cutting::TissueMotion::centre(mesh, e, mesh.rest_positions()));
             };
             std::size_t parted = 0;
             for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-                for (int f = 0; f < mesh.num_faces(ElementId(i)); ++f) {
-                    const FaceId face{ElementId(i), f}, other = mesh.neighbor(face);
-                    parted += face < other && side(face.element) != side(other.element);
+                for (int f = 0; f < mesh.num_faces(CellId(i)); ++f) {
+                    const FaceId face{CellId(i), f}, other = mesh.neighbor(face);
+                    parted += face < other && side(face.cell) != side(other.cell);
                 }
             const auto report = geometric_cut(mesh, {&tool, 1}, {CutMode::separate});
             EXPECT_EQ(report.total.faces_opened, parted);
             EXPECT_EQ(report.after.elements, report.before.elements);
             EXPECT_EQ(report.warnings.empty(), parted > 0);
             for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-                for (int f = 0; f < mesh.num_faces(ElementId(i)); ++f)
-                    if (const FaceId other = mesh.neighbor({ElementId(i), f}); other.is_valid()) {
-                        EXPECT_EQ(side(ElementId(i)), side(other.element));
+                for (int f = 0; f < mesh.num_faces(CellId(i)); ++f)
+                    if (const FaceId other = mesh.neighbor({CellId(i), f}); other.is_valid()) {
+                        EXPECT_EQ(side(CellId(i)), side(other.cell));
                     }
         }
 }

@@ -69,7 +69,7 @@ PlaneCut random_plane(const Eigen::AlignedBox3d& box, test::Random& random) {
 /// Of the part of a plane that is inside a body of tetrahedra, m2.
 double area_in(const Mesh& mesh, const PlaneCut& plane) {
     double sum = 0.0;
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         std::array<Vec3, 4> corners;
         for (std::size_t k = 0; k < 4; ++k) corners[k] = mesh.rest_position(mesh.corners(e)[k]);
         sum += test::polygon_area(test::plane_section(corners, plane.point, plane.normal));
@@ -80,15 +80,15 @@ double area_in(const Mesh& mesh, const PlaneCut& plane) {
 /// Returns into how many pieces a plane parts a body: two, if the body does not bend back to it.
 std::size_t pieces_beside(const Mesh& mesh, const PlaneCut& plane) {
     DisjointSet pieces(mesh.node_capacity());
-    const auto is_above = [&](NodeId n) {
+    const auto is_above = [&](VertexId n) {
         return plane.normal.dot(mesh.rest_position(n) - plane.point) > 0.0;
     };
-    for (const ElementId e : mesh.elements())
-        for (const NodeId a : mesh.corners(e))
-            for (const NodeId b : mesh.corners(e))
+    for (const CellId e : mesh.elements())
+        for (const VertexId a : mesh.corners(e))
+            for (const VertexId b : mesh.corners(e))
                 if (is_above(a) == is_above(b)) pieces.join(a.value, b.value);
     std::set<std::int32_t> heads;
-    for (const NodeId n : mesh.nodes()) heads.insert(pieces.find(n.value));
+    for (const VertexId n : mesh.nodes()) heads.insert(pieces.find(n.value));
     return heads.size();
 }
 

@@ -59,12 +59,12 @@ struct SlabAndCube {
 };
 
 /// The nodes that are between two heights at rest, m.
-physics::NodeSet nodes_between(const Mesh& mesh, double low, double high) {
-    std::vector<NodeId> nodes;
-    for (const NodeId n : mesh.nodes())
+physics::VertexSet nodes_between(const Mesh& mesh, double low, double high) {
+    std::vector<VertexId> nodes;
+    for (const VertexId n : mesh.nodes())
         if (mesh.rest_position(n).z() >= low && mesh.rest_position(n).z() <= high)
             nodes.push_back(n);
-    return physics::NodeSet(nodes);
+    return physics::VertexSet(nodes);
 }
 
 /// A body in contact with itself.
@@ -102,9 +102,9 @@ struct Body {
         time += dt;
         model.compute_forces(time);
     }
-    int piece_of(NodeId n) const { return pieces.of_element[mesh.incident_element(n).index()]; }
+    int piece_of(VertexId n) const { return pieces.of_element[mesh.incident_element(n).index()]; }
 
-    bool is_inside(const Vec3& x, ElementId e) const {
+    bool is_inside(const Vec3& x, CellId e) const {
         std::array<Vec3, 4> at;
         for (std::size_t k = 0; k < 4; ++k)
             at[k] = model.mesh_positions()[mesh.corners(e)[k].index()];
@@ -120,13 +120,13 @@ struct Body {
     double deepest() const {
         const auto x = model.mesh_positions();
         std::array<Box, 2> boxes;
-        for (const NodeId n : mesh.nodes())
+        for (const VertexId n : mesh.nodes())
             boxes[static_cast<std::size_t>(piece_of(n))].extend(x[n.index()]);
         double deepest = 0.0;
         const auto look_at = [&](const Vec3& point, int piece) {
             if (!boxes[static_cast<std::size_t>(1 - piece)].contains(point)) return;
             const auto elements = mesh.elements();
-            if (std::none_of(elements.begin(), elements.end(), [&](ElementId e) {
+            if (std::none_of(elements.begin(), elements.end(), [&](CellId e) {
                     return pieces.of_element[e.index()] != piece && is_inside(point, e);
                 }))
                 return;
@@ -139,7 +139,7 @@ struct Body {
         };
         for (const Triangle& triangle : surface.triangles())
             for (std::size_t k = 0; k < 3; ++k) {
-                const NodeId a = triangle[k], b = triangle[(k + 1) % 3];
+                const VertexId a = triangle[k], b = triangle[(k + 1) % 3];
                 if (b < a) continue;
                 for (const double part : {0.0, 0.33, 0.67})
                     look_at((1.0 - part) * x[a.index()] + part * x[b.index()], piece_of(a));

@@ -42,9 +42,9 @@ struct Halves {
         const Vec3 spin = random.vector(0.1), slide = random.vector(0.03);
         std::vector<Vec3> x(model.positions().begin(), model.positions().end()), v(x.size());
         for (const ElementId e : model.fragments().elements()) {
-            const ElementId cell = model.fragments().cells_of(e)[0];
+            const CellId cell = model.fragments().cells_of(e)[0];
             Vec3 centre = Vec3::Zero();
-            for (const NodeId n : mesh.corners(cell)) centre += 0.25 * mesh.rest_position(n);
+            for (const VertexId n : mesh.corners(cell)) centre += 0.25 * mesh.rest_position(n);
             const double side = (centre - point).dot(normal) > 0.0 ? 1.0 : -1.0;
             for (const NodeId n : model.fragments().corners(e)) {
                 const Vec3& X = model.fragments().rest_position(n);
@@ -109,7 +109,7 @@ TEST(SurfaceContact, IsWhatStopsTheHalves) {
         halves.model.compute_forces(time);
     }
     double lowest = 0.0;  // of the top, against where it was
-    for (const NodeId n : halves.mesh.nodes())
+    for (const VertexId n : halves.mesh.nodes())
         if (halves.mesh.rest_position(n).z() == 1.0)
             lowest = std::min(lowest, halves.model.mesh_positions()[n.index()].z() - 1.0);
     EXPECT_LT(lowest, -0.1);
@@ -146,7 +146,7 @@ struct SlidingCorner {
         std::vector<Vec3> x(now.begin(), now.end()), v(x.size(), flight);
         for (const ElementId e : model.fragments().elements()) {
             Vec3 centre = Vec3::Zero();
-            for (const NodeId n : mesh.corners(model.fragments().cells_of(e)[0]))
+            for (const VertexId n : mesh.corners(model.fragments().cells_of(e)[0]))
                 centre += 0.25 * mesh.rest_position(n);
             if ((centre - point).dot(normal) < 0.0) continue;
             for (const NodeId n : model.fragments().corners(e)) v[n.index()] = flight + slide;
@@ -215,13 +215,13 @@ TEST(SurfaceContact, OfThinPlatesIsNoneBehindThem) {
             {{1000.0, physics::HyperElasticLinks{physics::NeoHookean{1500.0, 6000.0}}}},
             {{0, 0}},
             {}};
-        std::vector<NodeId> lower_nodes, upper_nodes;
-        for (const NodeId n : mesh.nodes())
+        std::vector<VertexId> lower_nodes, upper_nodes;
+        for (const VertexId n : mesh.nodes())
             (mesh.rest_position(n).z() < thick + 0.5 * apart ? lower_nodes : upper_nodes)
                 .push_back(n);
         physics::BoundaryConditions held;
         held.gravity = Vec3(0, 0, 1);
-        held.constraints.push_back({.name = "lower", .nodes = physics::NodeSet(lower_nodes)});
+        held.constraints.push_back({.name = "lower", .nodes = physics::VertexSet(lower_nodes)});
         Model model(mesh, table, std::move(held));
         const topology::BoundarySurface surface(mesh);
         Contact contact({}, topology::mean_element_length(mesh));
@@ -239,7 +239,7 @@ TEST(SurfaceContact, OfThinPlatesIsNoneBehindThem) {
             deepest = std::max(deepest, contact.max_penetration());
         }
         EXPECT_LT(deepest, 0.02 * thick);
-        for (const NodeId n : upper_nodes)
+        for (const VertexId n : upper_nodes)
             EXPECT_NEAR(model.mesh_positions()[n.index()].z() - mesh.rest_position(n).z(),
                         0.5 * time * time, 0.03 * 0.5 * time * time);
     }

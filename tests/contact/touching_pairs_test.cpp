@@ -18,7 +18,7 @@ namespace {
 
 using topology::Mesh;
 
-using Pair = std::pair<NodeId, std::uint32_t>;
+using Pair = std::pair<VertexId, std::uint32_t>;
 
 Vec3 area_of(const Triangle& t, std::span<const Vec3> x) {
     return 0.5 * (x[t[1].index()] - x[t[0].index()]).cross(x[t[2].index()] - x[t[0].index()]);
@@ -52,7 +52,7 @@ TEST(TouchingPairs, AreThoseThatASearchThroughAllFinds) {
         ASSERT_EQ(pieces.count, 2);
         const Vec3 shift = random.vector(0.05);
         std::vector<Vec3> x(mesh.rest_positions().begin(), mesh.rest_positions().end());
-        for (const NodeId n : mesh.nodes()) {
+        for (const VertexId n : mesh.nodes()) {
             if (pieces.of_element[mesh.incident_element(n).index()] == 0) x[n.index()] += shift;
             x[n.index()].z() += 0.2 * x[n.index()].x() * x[n.index()].x();
         }
@@ -70,12 +70,12 @@ TEST(TouchingPairs, AreThoseThatASearchThroughAllFinds) {
         for (std::size_t i = 0; i < pairs.nodes().size(); ++i)
             for (const std::uint32_t t : pairs.triangles_of(i)) found.emplace(pairs.nodes()[i], t);
         const auto normals = normals_of(surface.triangles(), x);
-        const auto piece_of = [&](NodeId n) {
+        const auto piece_of = [&](VertexId n) {
             return pieces.of_element[mesh.incident_element(n).index()];
         };
         for (std::uint32_t t = 0; t < surface.triangles().size(); ++t) {
             const Triangle& triangle = surface.triangles()[t];
-            for (const NodeId n : mesh.nodes()) {
+            for (const VertexId n : mesh.nodes()) {
                 if (normals[n.index()].isZero(0.0) || piece_of(n) == piece_of(triangle[0]))
                     continue;
                 const double distance =

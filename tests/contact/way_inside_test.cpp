@@ -19,7 +19,7 @@ using topology::Mesh;
 
 /// True if a point is in a tetrahedron of the mesh, or outside it by a rounding error.
 bool is_in_mesh(const Mesh& mesh, std::span<const Vec3> positions, const Vec3& x) {
-    return std::ranges::any_of(mesh.elements(), [&](ElementId e) {
+    return std::ranges::any_of(mesh.elements(), [&](CellId e) {
         const auto corners = mesh.corners(e);
         Eigen::Matrix3d edges;
         for (int k = 0; k < 3; ++k)
@@ -55,9 +55,9 @@ TEST(WayInside, AgreesWithPointsAlongTheWay) {
             Vec3 along =
                 random.uniform(0.05, 1.0) * box.sizes().norm() * random.vector(1.0).normalized();
             if (seed % 2 == 1) {  // to the middle of an element, maybe out of the body and in again
-                const auto corners = mesh.corners(ElementId(random.below(mesh.num_elements())));
+                const auto corners = mesh.corners(CellId(random.below(mesh.num_elements())));
                 along = -from;
-                for (const NodeId n : corners) along += 0.25 * positions[n.index()];
+                for (const VertexId n : corners) along += 0.25 * positions[n.index()];
             }
             if (along.dot(outward) > -0.1 * along.norm()) continue;
             constexpr int num_points = 400;
@@ -158,7 +158,7 @@ TEST(WayInside, GoesThroughHexahedra) {
     const topology::BoundarySurface surface(mesh);
     for (std::size_t t = 0; t < surface.triangles().size(); ++t) {
         Vec3 from = Vec3::Zero();
-        for (const NodeId n : surface.triangles()[t]) from += mesh.rest_position(n) / 3.0;
+        for (const VertexId n : surface.triangles()[t]) from += mesh.rest_position(n) / 3.0;
         const auto inside = [&](const Vec3& to) {
             return is_way_inside(mesh, mesh.rest_positions(), surface.faces()[t],
                                  surface.triangles()[t], Vec3::Constant(1.0 / 3), to);

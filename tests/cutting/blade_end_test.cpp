@@ -166,7 +166,7 @@ TEST(FinishedCut, OpensToTheEdgeAndThroughCarriersCutByHalf) {
         SplitBody body(test::jittered_cube(3 + static_cast<int>(seed % 4), 0.2, seed));
         const StoppingBlade blade(random);
         double expected = 0.0, swept = 0.0;
-        for (const ElementId e : body.mesh.elements()) {
+        for (const CellId e : body.mesh.elements()) {
             std::array<Vec3, 4> corners;
             for (std::size_t k = 0; k < 4; ++k)
                 corners[k] = body.positions[body.mesh.corners(e)[k].index()];

@@ -98,7 +98,7 @@ std::vector<Vec3> between(const std::vector<Vec3>& a, const std::vector<Vec3>& b
     return x;
 }
 
-std::set<ElementId> as_set(const std::vector<ElementId>& elements) {
+std::set<CellId> as_set(const std::vector<CellId>& elements) {
     EXPECT_TRUE(std::is_sorted(elements.begin(), elements.end()));
     return {elements.begin(), elements.end()};
 }
@@ -106,19 +106,18 @@ std::set<ElementId> as_set(const std::vector<ElementId>& elements) {
 constexpr int num_moments = test::num_cases(200);
 
 /// Covered at one of many moments of the step, with the tool grown by `growth`.
-std::set<ElementId> covered_at_moments(const Mesh& mesh, const std::vector<Vec3>& x0,
-                                       const std::vector<Vec3>& x1, const CarverShape& shape,
-                                       const Pose& before, const Pose& after, double growth) {
-    std::set<ElementId> covered;
+std::set<CellId> covered_at_moments(const Mesh& mesh, const std::vector<Vec3>& x0,
+                                    const std::vector<Vec3>& x1, const CarverShape& shape,
+                                    const Pose& before, const Pose& after, double growth) {
+    std::set<CellId> covered;
     for (int i = 0; i <= num_moments; ++i) {
         const double s = static_cast<double>(i) / num_moments;
         const Pose pose = between(before, after, s);
         const std::vector<Vec3> x = between(x0, x1, s);
         for (std::size_t e = 0; e < mesh.element_capacity(); ++e)
-            if (mesh.is_alive(ElementId(e)) &&
-                distance(shape, pose.to_tool(TissueMotion::centre(mesh, ElementId(e), x))) <=
-                    growth)
-                covered.insert(ElementId(e));
+            if (mesh.is_alive(CellId(e)) &&
+                distance(shape, pose.to_tool(TissueMotion::centre(mesh, CellId(e), x))) <= growth)
+                covered.insert(CellId(e));
     }
     return covered;
 }
@@ -192,7 +191,7 @@ TEST(Carver, TurningInSmallStepsCoversAsACrawl) {
             {0, 0, 0.5}};
     };
     constexpr int num_steps = 40;
-    std::set<ElementId> found, certain, possible;
+    std::set<CellId> found, certain, possible;
     for (int i = 0; i < num_steps; ++i) {
         const Pose a = pose(static_cast<double>(i) / num_steps),
                    b = pose(static_cast<double>(i + 1) / num_steps);
@@ -220,17 +219,17 @@ TEST(Carver, AFastToolMissesNothing) {
         from.position = {0.4, 0.45, -1e3};
         to.position = {0.4, 0.45, 1e3};
         const auto at_once = as_set(covered_elements({mesh, x, x}, ball, from, to));
-        std::set<ElementId> step_by_step;
+        std::set<CellId> step_by_step;
         for (int i = 0; i < 1000; ++i) {
             from.position.z() = -0.5 + 2e-3 * i;
             to.position.z() = -0.5 + 2e-3 * (i + 1);
             step_by_step.merge(as_set(covered_elements({mesh, x, x}, ball, from, to)));
         }
         EXPECT_EQ(at_once, step_by_step);
-        std::set<ElementId> expected;
+        std::set<CellId> expected;
         for (std::size_t e = 0; e < mesh.element_capacity(); ++e) {
-            const Vec3 c = TissueMotion::centre(mesh, ElementId(e), x);
-            if (std::hypot(c.x() - 0.4, c.y() - 0.45) <= 0.11) expected.insert(ElementId(e));
+            const Vec3 c = TissueMotion::centre(mesh, CellId(e), x);
+            if (std::hypot(c.x() - 0.4, c.y() - 0.45) <= 0.11) expected.insert(CellId(e));
         }
         EXPECT_EQ(at_once, expected);
         EXPECT_GT(expected.size(), 5u);

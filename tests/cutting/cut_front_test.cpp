@@ -25,13 +25,13 @@ const topology::Mesh& any_mesh() {
 using test::Random;
 using topology::ChangeSet;
 
-NodeId node(std::size_t i) { return NodeId(i); }
+VertexId node(std::size_t i) { return VertexId(i); }
 
 /// A record that says so: one node is a copy, the other is between two.
 ChangeSet additions(std::initializer_list<std::pair<std::size_t, std::size_t>> copies) {
     ChangeSet changes;
     for (const auto& [id, source] : copies) {
-        topology::NodeRecord record;
+        topology::VertexRecord record;
         record.id = node(id);
         record.sources[0] = {node(source), 1.0};
         record.num_sources = 1;
@@ -89,7 +89,7 @@ TEST(CutFront, CopiesAreWhatTheirSourcesAre) {
     front.toggle(node(2), node(8));
     front.toggle(node(2), node(7));
     ChangeSet changes = additions({{20, 1}, {21, 2}, {22, 9}});
-    topology::NodeRecord between;
+    topology::VertexRecord between;
     between.id = node(23);
     between.num_sources = 2;
     between.sources = {{{node(1), 0.5}, {node(2), 0.5}}};
@@ -114,9 +114,9 @@ TEST(CutFront, CopiesAreWhatTheirSourcesAre) {
 }
 
 /// The node and those that come after it in its ring, in ascending order.
-std::vector<NodeId> ring(const CutFront& front, NodeId n) {
-    std::vector<NodeId> nodes{n};
-    for (NodeId twin = front.next_twin(n); twin != n && nodes.size() < 10;
+std::vector<VertexId> ring(const CutFront& front, VertexId n) {
+    std::vector<VertexId> nodes{n};
+    for (VertexId twin = front.next_twin(n); twin != n && nodes.size() < 10;
          twin = front.next_twin(twin))
         nodes.push_back(twin);
     std::sort(nodes.begin(), nodes.end());
@@ -130,8 +130,8 @@ TEST(CutFront, TwinsMakeARing) {
     front.apply(any_mesh(), additions({{20, 1}, {21, 1}}), true);
     front.apply(any_mesh(), additions({{22, 20}, {23, 9}}), true);
     front.apply(any_mesh(), additions({{24, 1}}));  // by another cut
-    const std::vector<NodeId> all{node(1), node(20), node(21), node(22)};
-    for (const NodeId n : all) EXPECT_EQ(ring(front, n), all);
+    const std::vector<VertexId> all{node(1), node(20), node(21), node(22)};
+    for (const VertexId n : all) EXPECT_EQ(ring(front, n), all);
     EXPECT_EQ(ring(front, node(2)), std::vector{node(2)});
     EXPECT_EQ(ring(front, node(23)), std::vector{node(23)});  // not on the cut
     EXPECT_EQ(ring(front, node(24)), std::vector{node(24)});
@@ -152,13 +152,13 @@ TEST(CutFront, ForgetsWhatIsLeftBehind) {
     front.toggle(node(1), node(2));  // one to a node that is
     front.toggle(node(3), node(7));
     const auto mesh = topology::Mesh::build(test::jittered_cube(1, 0.0, 1)).mesh;
-    front.forget(mesh, front.nodes_unless([](NodeId n) { return n != node(1); }));
+    front.forget(mesh, front.nodes_unless([](VertexId n) { return n != node(1); }));
     EXPECT_FALSE(front.is_on(node(1)));
     EXPECT_TRUE(front.is_on(node(2)) && front.is_on(node(3)));
     EXPECT_FALSE(front.is_crossed(node(1), node(7)));
     EXPECT_TRUE(front.is_crossed(node(1), node(2)));  // the other end still needs it
     EXPECT_TRUE(front.is_crossed(node(3), node(7)));
-    front.forget(mesh, front.nodes_unless([](NodeId) { return false; }));
+    front.forget(mesh, front.nodes_unless([](VertexId) { return false; }));
     EXPECT_TRUE(front.is_empty());
     for (const auto& [a, b] : {std::pair(1, 2), {1, 7}, {3, 7}})
         EXPECT_FALSE(
@@ -171,29 +171,29 @@ struct CornersOnCut {
     topology::Mesh mesh = topology::Mesh::build(test::jittered_cube(1, 0.0, 1)).mesh;
     topology::MeshEdit edit{mesh};
     CutFront front;
-    ElementId element{0u};
-    NodeId far = mesh.corners(element)[0], near_end = mesh.corners(element)[1];
+    CellId element{0u};
+    VertexId far = mesh.corners(element)[0], near_end = mesh.corners(element)[1];
 
     CornersOnCut() {
-        for (const NodeId n : mesh.corners(element).subspan(1)) front.put_on(n, true, 1.0, 1);
+        for (const VertexId n : mesh.corners(element).subspan(1)) front.put_on(n, true, 1.0, 1);
     }
 
     /// Returns the half that has the end b.
-    ElementId divide(ElementId e, NodeId a, NodeId b, bool is_crossed_from_a) {
+    CellId divide(CellId e, VertexId a, VertexId b, bool is_crossed_from_a) {
         const auto& halves = edit.bisect(e, a, b, 0.5);
         front.put_on(halves.node, true, 1.0, 2);
         if (is_crossed_from_a) front.toggle(a, halves.node);
         front.place_halves(mesh, a, b, halves.node, halves.elements);
-        ElementId half;
+        CellId half;
         for (const auto& [kept, added] : halves.elements)
             if (kept == e) half = added;
         EXPECT_GE(mesh.corner_of(half, b), 0);
         return half;
     }
-    std::optional<CutFront::Place> place_of(ElementId e) const {
+    std::optional<CutFront::Place> place_of(CellId e) const {
         return front.place_of(e, mesh.corners(e).first<4>());
     }
-    void expect_place(ElementId e, NodeId corner, bool is_crossed) const {
+    void expect_place(CellId e, VertexId corner, bool is_crossed) const {
         const auto place = place_of(e);
         ASSERT_TRUE(place);
         EXPECT_EQ(place->corner, corner);
@@ -206,19 +206,19 @@ TEST(CutFront, KnowsTheSideOfElementsOnTheCut) {
         SCOPED_TRACE(is_crossed);
         CornersOnCut body;
         body.expect_place(body.element, body.far, false);
-        const ElementId beyond = body.divide(body.element, body.far, body.near_end, is_crossed);
+        const CellId beyond = body.divide(body.element, body.far, body.near_end, is_crossed);
         body.expect_place(body.element, body.far, false);
         // The middle is on this side of the cut through it if the way to it crosses the cut.
-        const NodeId middle = body.mesh.corners(beyond)[0];
+        const VertexId middle = body.mesh.corners(beyond)[0];
         body.expect_place(beyond, middle, !is_crossed);
 
         // Both halves keep what tells, then one loses it again.
-        const NodeId third = body.mesh.corners(beyond)[2];
-        const ElementId half = body.divide(beyond, body.near_end, third, false);
-        for (const ElementId e : {beyond, half}) body.expect_place(e, middle, !is_crossed);
-        const ElementId last = body.divide(half, middle, third, true);
+        const VertexId third = body.mesh.corners(beyond)[2];
+        const CellId half = body.divide(beyond, body.near_end, third, false);
+        for (const CellId e : {beyond, half}) body.expect_place(e, middle, !is_crossed);
+        const CellId last = body.divide(half, middle, third, true);
         body.expect_place(half, middle, !is_crossed);
-        const NodeId second_middle = body.mesh.corners(last)[0];
+        const VertexId second_middle = body.mesh.corners(last)[0];
         body.expect_place(last, second_middle, !is_crossed);
 
         body.front.forget(body.mesh, {third});
@@ -237,7 +237,7 @@ CutRecord cut_record(const Vec3& normal, double distance) {
 TEST(SnapHistory, RecognizesARepeatedCutAlsoAtCopies) {
     SnapHistory snap_history;
     const Vec3 x = Vec3::UnitX(), z = Vec3::UnitZ();
-    const NodeId n(std::size_t{3}), copy(std::size_t{7}), other(std::size_t{4});
+    const VertexId n(std::size_t{3}), copy(std::size_t{7}), other(std::size_t{4});
     snap_history.add(n, cut_record(z, 0.2));
     snap_history.add(n, cut_record(x, -0.1));
     EXPECT_TRUE(snap_history.has(n, cut_record(z, 0.2), 1.0));
@@ -250,7 +250,7 @@ TEST(SnapHistory, RecognizesARepeatedCutAlsoAtCopies) {
     EXPECT_FALSE(snap_history.has(n, cut_record(Vec3(0.0, 0.01, 1.0).normalized(), 0.2), 1.0));
     EXPECT_FALSE(snap_history.has(other, cut_record(z, 0.2), 1.0));
     topology::ChangeSet changes;
-    topology::NodeRecord record{copy, Vec3::Zero(), {}, 1};
+    topology::VertexRecord record{copy, Vec3::Zero(), {}, 1};
     record.sources[0] = {n, 1.0};
     changes.nodes_added.push_back(record);
     snap_history.apply(any_mesh(), changes);

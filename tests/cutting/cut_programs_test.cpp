@@ -80,7 +80,7 @@ class Patient {
   private:
     std::vector<Vec3> living_positions() const {
         std::vector<Vec3> positions;
-        for (const NodeId n : mesh_.nodes())
+        for (const VertexId n : mesh_.nodes())
             positions.push_back(model_.mesh_positions()[n.index()]);
         return positions;
     }

@@ -34,7 +34,7 @@ class Motion {
         ++step_;
         std::vector<Vec3> moved = body.positions;
         for (std::size_t n = 0; n < moved.size(); ++n) {
-            const Vec3& X = body.mesh.rest_position(NodeId(n));
+            const Vec3& X = body.mesh.rest_position(VertexId(n));
             Vec3 velocity = random_.vector(0.1);
             for (const auto& wave : waves_)
                 velocity += wave.direction * std::sin(wave.number.dot(X) + wave.phase * step_);
@@ -56,21 +56,21 @@ class Motion {
 
 /// An element below and one above the middle of the body, all of whose nodes are `held`; invalid
 /// where there are none.
-std::pair<ElementId, ElementId> held_elements(const Body& body,
-                                              const std::function<bool(const Vec3&)>& held) {
-    std::pair<ElementId, ElementId> found;
+std::pair<CellId, CellId> held_elements(const Body& body,
+                                        const std::function<bool(const Vec3&)>& held) {
+    std::pair<CellId, CellId> found;
     for (std::size_t e = 0; e < body.mesh.element_capacity(); ++e) {
-        const auto corners = body.mesh.corners(ElementId(e));
-        const bool is_held = std::all_of(corners.begin(), corners.end(), [&](NodeId n) {
+        const auto corners = body.mesh.corners(CellId(e));
+        const bool is_held = std::all_of(corners.begin(), corners.end(), [&](VertexId n) {
             return held(body.mesh.rest_position(n));
         });
-        const bool is_low = body.centre(ElementId(e)).z() < body.box().center().z();
-        if (is_held) (is_low ? found.first : found.second) = ElementId(e);
+        const bool is_low = body.centre(CellId(e)).z() < body.box().center().z();
+        if (is_held) (is_low ? found.first : found.second) = CellId(e);
     }
     return found;
 }
 
-bool are_separated(const Body& body, ElementId a, ElementId b) {
+bool are_separated(const Body& body, CellId a, CellId b) {
     const auto pieces = topology::components(body.mesh);
     return pieces.of_element[a.index()] != pieces.of_element[b.index()];
 }
@@ -140,8 +140,8 @@ TEST(Separator, PartsTissueThatRunsIntoTheBlade) {
                 const auto pieces = topology::components(body.mesh);
                 std::map<int, std::set<bool>> sides;
                 for (std::size_t e = 0; e < pieces.of_element.size(); ++e)
-                    if (!is_leaf(body.mesh, ElementId(e)))
-                        sides[pieces.of_element[e]].insert(plane.height(body.centre(ElementId(e))) >
+                    if (!is_leaf(body.mesh, CellId(e)))
+                        sides[pieces.of_element[e]].insert(plane.height(body.centre(CellId(e))) >
                                                            0.0);
                 for (const auto& [piece, of_piece] : sides) EXPECT_EQ(of_piece.size(), 1u);
             }
@@ -199,13 +199,13 @@ TEST(Separator, ATurningBladePartsTheBody) {
             EXPECT_TRUE(are_separated(body, bottom, top));
             for (std::size_t e = 0; e < body.mesh.element_capacity(); ++e) {
                 // Well outside of the arc, or well within: the side is plain.
-                const Vec3 x = body.centre(ElementId(e)) - pivot;
+                const Vec3 x = body.centre(CellId(e)) - pivot;
                 const double r = std::hypot(x.y(), x.z()) - radius;
                 // Chords leave their arc by this, the slant of the edge by some more.
                 if (std::abs(r) <
                     radius * (1 - std::cos(std::numbers::pi / num_steps / 2)) + 0.1 * size)
                     continue;
-                EXPECT_FALSE(are_separated(body, ElementId(e), r > 0 ? top : bottom));
+                EXPECT_FALSE(are_separated(body, CellId(e), r > 0 ? top : bottom));
             }
         }
     }

@@ -36,15 +36,15 @@ TEST(Separator, ASweepRightThroughPartsAlongThePlane) {
             const BladePlane plane(box.center() + random.vector(0.1 * size), random.vector(1));
             std::vector<bool> above;
             for (std::size_t e = 0; e < body.mesh.element_capacity(); ++e)
-                above.push_back(plane.height(body.centre(ElementId(e))) > 0.0);
-            const auto side = [&](ElementId e) -> bool { return above[e.index()]; };
+                above.push_back(plane.height(body.centre(CellId(e))) > 0.0);
+            const auto side = [&](CellId e) -> bool { return above[e.index()]; };
             const auto faces = body.inner_faces();
             body.step(plane.edge(2 * size, -2 * size), plane.edge(2 * size, 2 * size));
 
             // Only faces between the sides, and all of them, but for those that single elements of
             // the one side hang on the other by.
             for (const auto& pair : faces) {
-                const bool is_between = side(pair.a.element) != side(pair.b.element);
+                const bool is_between = side(pair.a.cell) != side(pair.b.cell);
                 if (body.opened.contains(pair)) {
                     EXPECT_TRUE(is_between);
                 } else if (is_between) {
@@ -91,7 +91,7 @@ TEST(Separator, PlanesThroughNodesAndCentresPartAsWell) {
                     };
                     std::vector<bool> above;
                     for (std::size_t e = 0; e < body.mesh.element_capacity(); ++e) {
-                        double height = (body.centre(ElementId(e)) - point).dot(normal);
+                        double height = (body.centre(CellId(e)) - point).dot(normal);
                         for (const double shifted : {normal.x(), normal.y(), normal.z()})
                             if (height == 0.0) height = shifted;
                         above.push_back(height > 0.0);
@@ -114,7 +114,7 @@ Vec3 intersection(const Body& body, const topology::FacePair& pair) {
     const Mesh& mesh = body.mesh;
     if (mesh.face_size(pair.a) != 3) return body.centre(pair.a);
     const auto at = [&](int p) -> Vec3 { return mesh.rest_position(mesh.face_corner(pair.a, p)); };
-    const Vec3 from = body.centre(pair.a.element), to = body.centre(pair.b.element);
+    const Vec3 from = body.centre(pair.a.cell), to = body.centre(pair.b.cell);
     Eigen::Matrix3d system;
     system << at(1) - at(0), at(2) - at(0), from - to;
     const Vec3 solution = system.inverse() * (from - at(0));  // not finite if it is in the plane
@@ -129,7 +129,7 @@ int crossings(const Body& body, const topology::FacePair& pair, const BladePlane
               double reach, double from, double to) {
     const Vec3 middle = intersection(body, pair);
     int count = 0;
-    for (const Vec3& end : {body.centre(pair.a.element), body.centre(pair.b.element)}) {
+    for (const Vec3& end : {body.centre(pair.a.cell), body.centre(pair.b.cell)}) {
         const double h0 = plane.height(end), h1 = plane.height(middle);
         if ((h0 > 0.0) == (h1 > 0.0)) continue;
         const Vec3 x = end + h0 / (h0 - h1) * (middle - end) - plane.point;
@@ -187,8 +187,8 @@ TEST(Separator, APartialSweepOpensButPartsNothing) {
 }
 
 /// Edges of a face as pairs of nodes.
-std::vector<std::pair<NodeId, NodeId>> edges_of(const Mesh& mesh, FaceId f) {
-    std::vector<std::pair<NodeId, NodeId>> edges;
+std::vector<std::pair<VertexId, VertexId>> edges_of(const Mesh& mesh, FaceId f) {
+    std::vector<std::pair<VertexId, VertexId>> edges;
     for (int p = 0; p < mesh.face_size(f); ++p)
         edges.push_back(
             std::minmax(mesh.face_corner(f, p), mesh.face_corner(f, (p + 1) % mesh.face_size(f))));
@@ -205,7 +205,7 @@ TEST(Separator, OpensASheetThatEndsAtTheBlade) {
             Random random(seed);
             Body body(family.data);
             const Mesh uncut = Mesh::build(family.data).mesh;
-            std::set<std::pair<NodeId, NodeId>> on_surface;
+            std::set<std::pair<VertexId, VertexId>> on_surface;
             for (const FaceId f : topology::boundary_faces(uncut))
                 for (const auto& edge : edges_of(uncut, f)) on_surface.insert(edge);
             const auto box = body.box();
@@ -214,7 +214,7 @@ TEST(Separator, OpensASheetThatEndsAtTheBlade) {
             const Edge last = plane.edge(2 * size, 0.0);
             body.step(plane.edge(2 * size, -size), last);
 
-            std::map<std::pair<NodeId, NodeId>, std::vector<topology::FacePair>> at_edge;
+            std::map<std::pair<VertexId, VertexId>, std::vector<topology::FacePair>> at_edge;
             for (const auto& pair : body.opened)
                 for (const auto& edge : edges_of(uncut, pair.a)) at_edge[edge].push_back(pair);
             int num_ends = 0;
@@ -234,8 +234,8 @@ TEST(Separator, OpensASheetThatEndsAtTheBlade) {
             std::set<topology::FacePair> behind, reached;
             for (const auto& pair : body.opened) {
                 const Vec3 x = body.centre(pair.a) - plane.point;
-                if (pieces.of_element[pair.a.element.index()] == main_piece &&
-                    pieces.of_element[pair.b.element.index()] == main_piece &&
+                if (pieces.of_element[pair.a.cell.index()] == main_piece &&
+                    pieces.of_element[pair.b.cell.index()] == main_piece &&
                     std::hypot(plane.normal.dot(x), plane.v.dot(x)) > body.largest_element())
                     behind.insert(pair);
             }
@@ -315,14 +315,14 @@ TEST(Separator, ABentEdgePartsAlongItsShape) {
         };
         std::vector<bool> above;
         for (std::size_t e = 0; e < body.mesh.element_capacity(); ++e) {
-            const Vec3 c = body.centre(ElementId(e));
+            const Vec3 c = body.centre(CellId(e));
             above.push_back(c.z() > roof(c.x()));
         }
         body.step(edge(-1), edge(2));
         for (const auto& pair : body.opened)
-            EXPECT_NE(above[pair.a.element.index()], above[pair.b.element.index()]);
+            EXPECT_NE(above[pair.a.cell.index()], above[pair.b.cell.index()]);
         for (const auto& pair : body.inner_faces())
-            EXPECT_EQ(above[pair.a.element.index()], above[pair.b.element.index()]);
+            EXPECT_EQ(above[pair.a.cell.index()], above[pair.b.cell.index()]);
         EXPECT_EQ(topology::components(body.mesh).count, 2);
         expect_parted_cleanly(body);
     }

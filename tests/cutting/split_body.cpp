@@ -21,7 +21,7 @@ using topology::SurfaceData;
 
 namespace {
 
-std::array<Vec3, 4> corners_at(const Mesh& mesh, ElementId e, std::span<const Vec3> positions) {
+std::array<Vec3, 4> corners_at(const Mesh& mesh, CellId e, std::span<const Vec3> positions) {
     std::array<Vec3, 4> x;
     for (std::size_t k = 0; k < 4; ++k) x[k] = positions[mesh.corners(e)[k].index()];
     return x;
@@ -149,7 +149,7 @@ std::vector<Vec3> followed(std::vector<Vec3> positions, const topology::ChangeSe
     return positions;
 }
 
-double element_volume(const Mesh& mesh, ElementId e, std::span<const Vec3> positions) {
+double element_volume(const Mesh& mesh, CellId e, std::span<const Vec3> positions) {
     const auto x = corners_at(mesh, e, positions);
     return topology::tetrahedron_volume(x[0], x[1], x[2], x[3]);
 }
@@ -158,9 +158,9 @@ std::vector<double> piece_volumes(const Mesh& mesh) {
     const auto pieces = topology::components(mesh);
     std::vector<double> volumes(static_cast<std::size_t>(pieces.count), 0.0);
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        if (!mesh.is_alive(ElementId(i))) continue;
+        if (!mesh.is_alive(CellId(i))) continue;
         volumes[static_cast<std::size_t>(pieces.of_element[i])] +=
-            element_volume(mesh, ElementId(i), mesh.rest_positions());
+            element_volume(mesh, CellId(i), mesh.rest_positions());
     }
     std::sort(volumes.rbegin(), volumes.rend());
     return volumes;
@@ -176,8 +176,8 @@ double volume_above(const Mesh& mesh, std::span<const Vec3> positions, const Vec
                     const Vec3& normal) {
     double sum = 0.0;
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        if (!mesh.is_alive(ElementId(i))) continue;
-        const auto x = corners_at(mesh, ElementId(i), positions);
+        if (!mesh.is_alive(CellId(i))) continue;
+        const auto x = corners_at(mesh, CellId(i), positions);
         std::array<double, 4> heights;
         for (std::size_t k = 0; k < 4; ++k) heights[k] = normal.dot(x[k] - point);
         sum += clipped_volume(x, heights);
@@ -188,8 +188,8 @@ double volume_above(const Mesh& mesh, std::span<const Vec3> positions, const Vec
 double longest_edge(const Mesh& mesh, std::span<const Vec3> positions) {
     double longest = 0.0;
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-        for (const NodeId a : mesh.corners(ElementId(i)))
-            for (const NodeId b : mesh.corners(ElementId(i)))
+        for (const VertexId a : mesh.corners(CellId(i)))
+            for (const VertexId b : mesh.corners(CellId(i)))
                 longest = std::max(longest, (positions[a.index()] - positions[b.index()]).norm());
     return longest;
 }
@@ -211,11 +211,11 @@ std::vector<FacePair> cut_faces(const Mesh& mesh) {
 }
 
 NodesOfCut nodes_of_cut(const Mesh& mesh) {
-    std::set<NodeId> parted, joined;
+    std::set<VertexId> parted, joined;
     for (const auto& [a, b] : cut_faces(mesh))
         for (int p = 0; p < 3; ++p)
             for (int q = 0; q < 3; ++q) {
-                const NodeId m = mesh.face_corner(a, p), n = mesh.face_corner(b, q);
+                const VertexId m = mesh.face_corner(a, p), n = mesh.face_corner(b, q);
                 if (mesh.rest_position(m) != mesh.rest_position(n)) continue;
                 if (m == n) {
                     joined.insert(m);
@@ -262,7 +262,7 @@ void expect_parted(const Mesh& mesh, std::span<const Vec3> positions, const Plan
     std::vector<double> highest(num_pieces, 0.0), lowest(num_pieces, 0.0);
     for (std::size_t e = 0; e < mesh.element_capacity(); ++e) {
         const auto piece = static_cast<std::size_t>(pieces.of_element[e]);
-        for (const NodeId n : mesh.corners(ElementId(e))) {
+        for (const VertexId n : mesh.corners(CellId(e))) {
             const Vec3 from = positions[n.index()] - plane.point;
             const double height = from.dot(plane.normal.normalized());
             highest[piece] = std::max(highest[piece], height);

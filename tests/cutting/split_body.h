@@ -56,7 +56,7 @@ SplitReport sum(const std::vector<Split>& parts);
 std::vector<Vec3> followed(std::vector<Vec3> positions, const topology::ChangeSet& changes);
 
 /// Of a tetrahedron, m3.
-double element_volume(const topology::Mesh& mesh, ElementId e, std::span<const Vec3> positions);
+double element_volume(const topology::Mesh& mesh, CellId e, std::span<const Vec3> positions);
 /// At rest, the largest first, m3.
 std::vector<double> piece_volumes(const topology::Mesh& mesh);
 double rest_volume(const topology::Mesh& mesh);
@@ -73,8 +73,8 @@ std::vector<topology::FacePair> cut_faces(const topology::Mesh& mesh);
 /// Nodes at cut faces, without those that only pairs of one and the same node meet at: sides of
 /// the cut that are still joined there.
 struct NodesOfCut {
-    std::vector<NodeId> parted;  ///< both of each pair
-    std::vector<NodeId> front;   ///< the same on both sides
+    std::vector<VertexId> parted;  ///< both of each pair
+    std::vector<VertexId> front;   ///< the same on both sides
 };
 NodesOfCut nodes_of_cut(const topology::Mesh& mesh);
 

@@ -71,7 +71,7 @@ struct Faces {
         const double hair = 1e-8 * body.box().diagonal().norm();
         for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
             for (int f = 0; f < 4; ++f) {
-                const FaceId face{ElementId(i), f};
+                const FaceId face{CellId(i), f};
                 Triangle triangle;
                 for (std::size_t p = 0; p < 3; ++p)
                     for (std::size_t c = 0; c < 3; ++c)

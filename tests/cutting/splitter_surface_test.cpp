@@ -201,7 +201,7 @@ TEST(SplitAlongSurface, ABoxOnDeformedFacesFreesAllInside) {
 }
 
 /// The faces of a tetrahedron of the mesh, or so many of them.
-SurfaceData faces_of(const Mesh& mesh, ElementId e, std::size_t num_faces) {
+SurfaceData faces_of(const Mesh& mesh, CellId e, std::size_t num_faces) {
     SurfaceData data;
     for (std::size_t f = 0; f < num_faces; ++f) {
         for (int p = 0; p < 3; ++p)
@@ -221,7 +221,7 @@ TEST(SplitAlongSurface, AllFacesOfATetrahedronFreeIt) {
         for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
             for (const std::size_t num_faces : {3u, 4u}) {
                 SCOPED_TRACE(testing::Message() << num_faces << " faces of element " << i);
-                const ElementId e(i);
+                const CellId e(i);
                 SplitBody body(data);
                 const Split done = body.cut(TriangleSurface(faces_of(mesh, e, num_faces)), {0.0});
                 EXPECT_TRUE(done.changes.elements_added.empty());
@@ -447,7 +447,7 @@ TEST(SplitAlongSurface, AnOpenOneStaysJoinedAtItsBoundary) {
         // Nodes at the boundary are one for both sides; all others were copied.
         const auto nodes = nodes_of_cut(body.mesh);
         std::set<std::array<double, 3>> front;
-        for (const NodeId node : nodes.front) {
+        for (const VertexId node : nodes.front) {
             const Vec3& x = body.mesh.rest_position(node);
             front.insert({x.x(), x.y(), x.z()});
         }

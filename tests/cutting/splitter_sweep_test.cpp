@@ -97,7 +97,7 @@ TEST(SplitByBlade, TheFrontFollowsWithinOneElement) {
                 // Nodes that are snapped make the sheet uneven.
                 EXPECT_LE(area, (snap > 0.0 ? 1.2 : 1.0 + 1e-12) * (passed + snap * edge));
                 EXPECT_GE(area, passed - (1.0 + snap) * edge);
-                for (const NodeId n : nodes_of_cut(body.mesh).front) {
+                for (const VertexId n : nodes_of_cut(body.mesh).front) {
                     const double z = body.positions[n.index()].z();
                     EXPECT_GE(z, to - (1.0 + snap) * edge);
                     EXPECT_LE(z, to + snap * edge + 1e-12);
@@ -144,7 +144,7 @@ struct MovingCut {
             const double t1 = static_cast<double>(i + 1) / num_steps;
             std::vector<Vec3> moved;
             for (std::size_t n = 0; n < body.mesh.node_capacity(); ++n)
-                moved.push_back(position(body.mesh.rest_position(NodeId(n)), t1));
+                moved.push_back(position(body.mesh.rest_position(VertexId(n)), t1));
             body.cut(SweptEdge(edge(t0), edge(t1)), front, options, moved);
         }
         return piece_volumes(body.mesh);
@@ -330,8 +330,8 @@ TEST(SplitByBlade, CrossingItsPathWithSnapLeavesFourComponents) {
 bool are_sides_joined(const topology::Mesh& mesh) {
     const topology::Components components = topology::components(mesh);
     std::set<int> left, right;
-    for (const ElementId e : mesh.elements()) {
-        for (const NodeId n : mesh.corners(e)) {
+    for (const CellId e : mesh.elements()) {
+        for (const VertexId n : mesh.corners(e)) {
             const double x = mesh.rest_position(n).x();
             if (x == 0.0) left.insert(components.of_element[e.index()]);
             if (x == 1.0) right.insert(components.of_element[e.index()]);

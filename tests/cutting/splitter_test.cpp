@@ -65,14 +65,14 @@ std::pair<double, double> volumes_of_halves(const SplitBody& body, const Halves&
     int upper = 0;
     std::array<double, 2> volumes{};
     for (std::size_t i = 0; i < body.mesh.element_capacity(); ++i) {
-        for (const NodeId n : body.mesh.corners(ElementId(i))) {
+        for (const VertexId n : body.mesh.corners(CellId(i))) {
             const double height = halves.height(body.positions[n.index()]);
             if (height <= highest) continue;
             highest = height;
             upper = pieces.of_element[i];
         }
         volumes.at(static_cast<std::size_t>(pieces.of_element[i])) +=
-            element_volume(body.mesh, ElementId(i), body.positions);
+            element_volume(body.mesh, CellId(i), body.positions);
     }
     return {volumes.at(static_cast<std::size_t>(upper)),
             volumes.at(static_cast<std::size_t>(1 - upper))};
@@ -83,7 +83,7 @@ double distance_of_cut(const SplitBody& body, const Halves& halves) {
     double largest = 0.0;
     for (const auto& pair : cut_faces(body.mesh))
         for (int p = 0; p < 3; ++p) {
-            const NodeId n = body.mesh.face_corner(pair.a, p);
+            const VertexId n = body.mesh.face_corner(pair.a, p);
             largest = std::max(largest, std::abs(halves.height(body.positions[n.index()])));
         }
     return largest;
@@ -242,10 +242,10 @@ TEST(Split, AlongTwoCrossingPlanesLeavesFourComponents) {
             std::array<double, 4> volumes{};
             for (std::size_t i = 0; i < body.mesh.element_capacity(); ++i) {
                 const auto piece = static_cast<std::size_t>(pieces.of_element[i]);
-                const double volume = element_volume(body.mesh, ElementId(i), body.positions);
+                const double volume = element_volume(body.mesh, CellId(i), body.positions);
                 volumes[piece] += volume;
                 moments[piece] +=
-                    volume * TissueMotion::centre(body.mesh, ElementId(i), body.positions);
+                    volume * TissueMotion::centre(body.mesh, CellId(i), body.positions);
             }
             std::set<std::pair<bool, bool>> sides;
             std::array<double, 2> above{};
@@ -277,10 +277,10 @@ TEST(Split, RefusesOtherCellsAndChangesNothing) {
             Mesh mesh = Mesh::build(family.data).mesh;
             const std::vector<Vec3> x(mesh.rest_positions().begin(), mesh.rest_positions().end());
             // Through the first element, which is a hexahedron.
-            Vec3 centre = TissueMotion::centre(mesh, ElementId(0), x);
+            Vec3 centre = TissueMotion::centre(mesh, CellId(0), x);
             for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-                if (mesh.kind(ElementId(i)) == topology::CellKind::hexahedron)
-                    centre = TissueMotion::centre(mesh, ElementId(i), x);
+                if (mesh.kind(CellId(i)) == topology::CellKind::hexahedron)
+                    centre = TissueMotion::centre(mesh, CellId(i), x);
             const MeshSnapshot before(mesh);
             CutFront front;
             SnapHistory snap_history;

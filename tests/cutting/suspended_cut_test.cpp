@@ -63,9 +63,9 @@ struct CrossingBlades {
 double reach_across(const topology::Mesh& mesh, const Blade& blade) {
     const topology::Components components = topology::components(mesh);
     std::vector<double> above(static_cast<std::size_t>(components.count)), below(above.size());
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         const auto piece = static_cast<std::size_t>(components.of_element[e.index()]);
-        for (const NodeId n : mesh.corners(e)) {
+        for (const VertexId n : mesh.corners(e)) {
             const double height = (mesh.rest_position(n) - blade.point).dot(blade.normal);
             above[piece] = std::max(above[piece], height);
             below[piece] = std::max(below[piece], -height);

@@ -46,7 +46,7 @@ class Body {
         if (!changes.is_empty()) {
             EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
             // Nodes are divided only where faces opened at them.
-            std::set<NodeId> at_opened;
+            std::set<VertexId> at_opened;
             for (const auto& pair : changes.faces_opened)
                 for (const FaceId f : {pair.a, pair.b})
                     for (int p = 0; p < mesh.face_size(f); ++p)
@@ -70,7 +70,7 @@ class Body {
         for (int i = 0; i < num_steps; ++i) step(at(i), at(i + 1));
     }
 
-    Vec3 centre(ElementId e) const { return TissueMotion::centre(mesh, e, positions); }
+    Vec3 centre(CellId e) const { return TissueMotion::centre(mesh, e, positions); }
     Vec3 centre(FaceId f) const {
         Vec3 sum = Vec3::Zero();
         for (int p = 0; p < mesh.face_size(f); ++p)
@@ -85,16 +85,16 @@ class Body {
     double largest_element() const {
         double size = 0.0;
         for (std::size_t e = 0; e < mesh.element_capacity(); ++e)
-            for (const NodeId a : mesh.corners(ElementId(e)))
-                for (const NodeId b : mesh.corners(ElementId(e)))
+            for (const VertexId a : mesh.corners(CellId(e)))
+                for (const VertexId b : mesh.corners(CellId(e)))
                     size = std::max(size, (positions[a.index()] - positions[b.index()]).norm());
         return size;
     }
     std::vector<topology::FacePair> inner_faces() const {
         std::vector<topology::FacePair> faces;
         for (std::size_t e = 0; e < mesh.element_capacity(); ++e)
-            for (int f = 0; f < mesh.num_faces(ElementId(e)); ++f) {
-                const FaceId face{ElementId(e), f}, other = mesh.neighbor(face);
+            for (int f = 0; f < mesh.num_faces(CellId(e)); ++f) {
+                const FaceId face{CellId(e), f}, other = mesh.neighbor(face);
                 if (face < other) faces.push_back({face, other});
             }
         return faces;
@@ -120,13 +120,13 @@ struct BladePlane {
 };
 
 /// Whether the element hangs on the body by one face only.
-inline bool is_leaf(const Mesh& mesh, ElementId e) {
+inline bool is_leaf(const Mesh& mesh, CellId e) {
     int num_joined = 0;
     for (int f = 0; f < mesh.num_faces(e); ++f) num_joined += mesh.neighbor({e, f}).is_valid();
     return num_joined == 1;
 }
 inline bool has_leaf(const Mesh& mesh, const topology::FacePair& pair) {
-    return is_leaf(mesh, pair.a.element) || is_leaf(mesh, pair.b.element);
+    return is_leaf(mesh, pair.a.cell) || is_leaf(mesh, pair.b.cell);
 }
 
 /// Pieces of more than `size` elements. Two elements at the boundary that have only each other on
@@ -144,8 +144,8 @@ inline long num_pieces_above(const Mesh& mesh, long size) {
 inline void expect_parted_cleanly(const Body& body) {
     const auto pieces = topology::components(body.mesh);
     for (const auto& pair : body.opened)
-        EXPECT_TRUE(pieces.of_element[pair.a.element.index()] !=
-                        pieces.of_element[pair.b.element.index()] ||
+        EXPECT_TRUE(pieces.of_element[pair.a.cell.index()] !=
+                        pieces.of_element[pair.b.cell.index()] ||
                     has_leaf(body.mesh, pair));
 }
 

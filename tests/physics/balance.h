@@ -44,7 +44,7 @@ struct Carried {
 };
 
 /// Ratio of longest edge to shortest altitude.
-inline double slenderness(const topology::Mesh& mesh, ElementId e) {
+inline double slenderness(const topology::Mesh& mesh, CellId e) {
     std::array<Vec3, 4> X;
     for (std::size_t k = 0; k < 4; ++k) X[k] = mesh.rest_position(mesh.corners(e)[k]);
     double longest = 0.0, largest_area = 0.0;
@@ -57,7 +57,7 @@ inline double slenderness(const topology::Mesh& mesh, ElementId e) {
     return longest * largest_area / (3.0 * volume);
 }
 
-inline Carried carried_by(const Model& model, ElementId cell) {
+inline Carried carried_by(const Model& model, CellId cell) {
     const topology::Mesh& mesh = model.mesh();
     const ElementId e = model.fragments().fragment_of_cell(cell);
     const ElementResult result = model.element_result(e);

@@ -24,7 +24,7 @@ constexpr double bar_volume = 0.2 * 0.1 * 0.1;
 // Opens all inner faces in the plane across the bar at `x`; half of it, up to y = 0.05, if partly.
 topology::ChangeSet open_across(Mesh& mesh, double x, bool is_partial) {
     topology::MeshEdit edit(mesh);
-    for (const ElementId e : living_elements(mesh))
+    for (const CellId e : living_elements(mesh))
         for (int f = 0; f < 4; ++f) {
             bool is_chosen = mesh.neighbor({e, f}).is_valid();
             for (int p = 0; p < 3; ++p) {
@@ -117,7 +117,7 @@ TEST(Constraints, PrescribeDisplacementAndRotation) {
         if (i != 2047 && i != 4095) continue;
         // A quarter of a turn, or half of that, about the axis through p along x; then the shift.
         const double angle = time * std::numbers::pi / 2;
-        for (const NodeId n : nodes_where(mesh, [](const Vec3& x) { return x.x() == 0.0; })) {
+        for (const VertexId n : nodes_where(mesh, [](const Vec3& x) { return x.x() == 0.0; })) {
             const Vec3 r = mesh.rest_position(n) - constraint.point;
             const Vec3 expected =
                 constraint.point +
@@ -134,7 +134,7 @@ TEST(Constraints, LeaveOtherComponentsFree) {
     BoundaryConditions s;
     s.gravity = {1.0, 2.0, 3.0};
     s.constraints.push_back(holding("plane",
-                                    NodeSet(nodes_where(mesh, [](const Vec3&) { return true; })),
+                                    VertexSet(nodes_where(mesh, [](const Vec3&) { return true; })),
                                     {false, true, false}));
     Model model(mesh, table_of_one_law(soft_law), s);
     double time = 0.0;
@@ -153,7 +153,7 @@ TEST(Constraints, TakeInNodesBornBetweenTheirs) {
     BoundaryConditions s;
     Constraint constraint = holding(
         "middle",
-        NodeSet(nodes_where(mesh, [](const Vec3& x) { return std::abs(x.x() - 0.1) < 1e-9; })));
+        VertexSet(nodes_where(mesh, [](const Vec3& x) { return std::abs(x.x() - 0.1) < 1e-9; })));
     constraint.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.0, 0.01, 0.0)}});
     s.constraints.push_back(constraint);
     s.gravity = {0.0, 0.0, -9.81};
@@ -186,11 +186,11 @@ TEST(Constraints, DoNotSpreadToRestoredNodes) {
     Mesh mesh = bar();
     const auto opened = open_across(mesh, 0.1, false);
     // Hold only one side of the open plane, the nodes that keep their ids.
-    std::vector<NodeId> held;
+    std::vector<VertexId> held;
     for (const auto& record : opened.nodes_added) held.push_back(record.sources[0].node);
     BoundaryConditions s;
     s.gravity = {0.0, 0.0, -9.81};
-    s.constraints.push_back(holding("one side", NodeSet(held)));
+    s.constraints.push_back(holding("one side", VertexSet(held)));
     Model model(mesh, table_of_one_law(soft_law), s);
     topology::MeshEdit edit(mesh);
     for (const auto& pair : opened.faces_opened) edit.close(pair.a, pair.b);
@@ -211,7 +211,7 @@ TEST(Constraints, RefuseToHoldANodeInTwoPlaces) {
     s.constraints.push_back(holding("clamp", left_end(mesh)));
     s.constraints[0].displacement = TimeCurve<Vec3>({{0.0, Vec3(0.0, 0.0, 0.01)}});
     s.constraints.push_back(
-        holding("rail", NodeSet(nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; })),
+        holding("rail", VertexSet(nodes_where(mesh, [](const Vec3& x) { return x.z() == 0.0; })),
                 {false, false, true}));
     try {
         Model model(mesh, table, s);
@@ -246,7 +246,7 @@ TEST(Loads, OnNodesAreSharedByCopiesByMass) {
             nodes_where(mesh, [](const Vec3& x) { return x.x() == 0.1 && x.y() == 0.0; });
         ASSERT_EQ(loaded.size(), 3u);
         BoundaryConditions s;
-        s.loads.push_back({"hook", NodalLoad{NodeSet(loaded), force, {}}, {}});
+        s.loads.push_back({"hook", NodalLoad{VertexSet(loaded), force, {}}, {}});
         Model model(mesh, table_of_one_law(soft_law, density), s);
         const std::vector<double> masses_before(model.masses().begin(), model.masses().end());
         const auto changes = open_across(mesh, 0.1, is_partial);
@@ -259,9 +259,9 @@ TEST(Loads, OnNodesAreSharedByCopiesByMass) {
         EXPECT_LE((model.totals().momentum / dt - 3.0 * force).norm(), 1e-12);
         // Shared by mass, the force gives all copies the acceleration of the undivided node.
         for (const auto& record : changes.nodes_added) {
-            const NodeId origin = record.sources[0].node;
+            const VertexId origin = record.sources[0].node;
             const bool is_loaded = std::find(loaded.begin(), loaded.end(), origin) != loaded.end();
-            for (const NodeId n : {record.id, origin}) {
+            for (const VertexId n : {record.id, origin}) {
                 const Vec3 expected = is_loaded ? (force / masses_before[origin.index()]).eval()
                                                 : Vec3::Zero().eval();
                 EXPECT_LE((model.velocities()[n.index()] / dt - expected).norm(),
@@ -269,11 +269,11 @@ TEST(Loads, OnNodesAreSharedByCopiesByMass) {
             }
         }
         // With all elements of a copy gone the others bear it all.
-        const NodeId gone = changes.nodes_added.front().id;
-        std::vector<ElementId> star;
+        const VertexId gone = changes.nodes_added.front().id;
+        std::vector<CellId> star;
         mesh.star(gone, star);
         topology::MeshEdit edit(mesh);
-        for (const ElementId e : star) edit.remove(e);
+        for (const CellId e : star) edit.remove(e);
         model.apply(model.mesh(), edit.commit());
         set_state(model, rest_state(mesh));
         model.integrate(0.0, dt);
@@ -350,7 +350,7 @@ TEST(Loads, OfPressureFollowTheSurface) {
 TEST(Loads, OfBodyForceAreForcePerRestVolume) {
     Mesh mesh = bar();
     const Vec3 force(100.0, 200.0, -300.0);
-    std::vector<ElementId> elements = living_elements(mesh);
+    std::vector<CellId> elements = living_elements(mesh);
     elements.resize(elements.size() / 3);
     const double volume = bar_volume / 3.0;  // all elements of a Kuhn box have the same volume
     const Load load{"field", BodyLoad{elements, force}, {}};

@@ -25,7 +25,7 @@ const std::vector<std::string> no_violations;
 
 Box box_of(const Mesh& mesh) {
     Box box;
-    for (const NodeId n : mesh.nodes()) box.extend(mesh.rest_position(n));
+    for (const VertexId n : mesh.nodes()) box.extend(mesh.rest_position(n));
     return box;
 }
 
@@ -117,7 +117,7 @@ void expect_totals_of_arrays(const Model& model, const Balance& balance) {
     ASSERT_EQ(arrays.cell_of_element.size(), model.mesh().num_elements());
     std::vector<double> volumes(arrays.mesh.num_cells(), 0.0);
     auto cell = arrays.cell_of_element.begin();
-    for (const ElementId e : model.mesh().elements())
+    for (const CellId e : model.mesh().elements())
         volumes.at(static_cast<std::size_t>(*cell++)) += rest_volume(model.mesh(), e);
     auto volume = volumes.begin();
     for (const ElementId e : model.fragments().elements()) {
@@ -292,16 +292,16 @@ BoundaryConditions all_loads_on(const Mesh& mesh) {
             is_right &= mesh.rest_position(mesh.face_corner(f, p)).x() == 1.0;
         if (is_right) right.push_back(f);
     }
-    std::vector<ElementId> half;
-    for (const ElementId e : mesh.elements())
+    std::vector<CellId> half;
+    for (const CellId e : mesh.elements())
         if (e.index() % 2 == 0) half.push_back(e);
     BoundaryConditions s;
     s.gravity = {0.0, 0.0, -9.81};
     s.loads = {{"wind", TractionLoad{right, {3.0, -2.0, 5.0}}, {}},
                {"gas", PressureLoad{all, 70.0}, {}},
-               {"field", BodyLoad{ElementSet(half), {0.0, 4.0, 0.0}}, {}},
+               {"field", BodyLoad{CellSet(half), {0.0, 4.0, 0.0}}, {}},
                {"hooks",
-                NodalLoad{NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.z() == 1.0; })),
+                NodalLoad{VertexSet(nodes_where(mesh, [](const Vec3& X) { return X.z() == 1.0; })),
                           {0.1, -0.2, 0.3},
                           {}},
                 {}}};
@@ -358,13 +358,13 @@ TEST(CutBodies, AreHeldByTheConstraintsThatTheirMaterialTouches) {
         const auto pieces = topology::components(mesh).of_element;
         const auto velocities = model.mesh_velocities();
         std::vector<bool> is_held(2, false);
-        for (const NodeId n : mesh.nodes())
+        for (const VertexId n : mesh.nodes())
             if (mesh.rest_position(n).x() == 0.0) {
                 // Material of the clamped face stays where it is, wherever the cut meets it.
                 EXPECT_LE(velocities[n.index()].norm(), 1e-12);
                 is_held[static_cast<std::size_t>(pieces[mesh.incident_element(n).index()])] = true;
             }
-        for (const NodeId n : mesh.nodes()) {
+        for (const VertexId n : mesh.nodes()) {
             const auto piece = static_cast<std::size_t>(pieces[mesh.incident_element(n).index()]);
             if (is_held[piece]) continue;
             EXPECT_LE((velocities[n.index()] - Vec3(0, 0, -9.81 * time)).norm(), 1e-9);
@@ -397,7 +397,7 @@ TEST(CutBodies, KeepTheirClampedFaceBetweenCutsNearEachOther) {
             double time = 0.0;
             for (int i = 0; i < 20; ++i) step(model, time, 0.5 * model.stable_step());
             const auto positions = model.mesh_positions();
-            for (const NodeId k : mesh.nodes()) {
+            for (const VertexId k : mesh.nodes()) {
                 const Vec3& X = mesh.rest_position(k);
                 if (X.x() == 0.0) {
                     EXPECT_LE((positions[k.index()] - X).norm(), 1e-12) << "node " << k.value;

@@ -18,9 +18,9 @@ namespace incise::physics {
 
 /// What constraints hold and what loads load, in ascending order.
 struct Selections {
-    std::vector<NodeId> held, moved;
+    std::vector<VertexId> held, moved;
     std::vector<FaceId> loaded_faces;
-    std::vector<ElementId> loaded_elements;
+    std::vector<CellId> loaded_elements;
 };
 
 /// Nodes at the lower end in x, and next to it; the whole surface; two thirds of the elements.
@@ -32,7 +32,7 @@ inline Selections selections(const topology::Mesh& mesh) {
                            [&](const Vec3& x) { return x.x() >= low + from && x.x() < low + to; });
     };
     Selections s{near(0.0, 0.01), near(0.01, 0.3), topology::boundary_faces(mesh), {}};
-    for (const ElementId e : living_elements(mesh))
+    for (const CellId e : living_elements(mesh))
         if (e.index() % 3 != 1) s.loaded_elements.push_back(e);
     return s;
 }
@@ -42,12 +42,11 @@ inline Selections selections(const topology::Mesh& mesh) {
 class Descent {
   public:
     Descent(const topology::Mesh& mesh, Selections first) : first_(std::move(first)) {
-        for (std::size_t n = 0; n < mesh.node_capacity(); ++n) roots_.push_back({NodeId(n)});
-        for (std::size_t e = 0; e < mesh.element_capacity(); ++e)
-            ancestors_.push_back(ElementId(e));
+        for (std::size_t n = 0; n < mesh.node_capacity(); ++n) roots_.push_back({VertexId(n)});
+        for (std::size_t e = 0; e < mesh.element_capacity(); ++e) ancestors_.push_back(CellId(e));
         for (const FaceId f : first_.loaded_faces) {
             const auto at = [&](int p) { return mesh.rest_position(mesh.face_corner(f, p)); };
-            planes_.emplace(f.element,
+            planes_.emplace(f.cell,
                             Plane{at(0), (at(1) - at(0)).cross(at(2) - at(0)).normalized()});
         }
     }
@@ -69,7 +68,7 @@ class Descent {
     Selections now(const topology::Mesh& mesh) const {
         Selections s;
         for (std::size_t n = 0; n < mesh.node_capacity(); ++n) {
-            const auto is_among = [&](const std::vector<NodeId>& first) {
+            const auto is_among = [&](const std::vector<VertexId>& first) {
                 return std::includes(first.begin(), first.end(), roots_[n].begin(),
                                      roots_[n].end());
             };
@@ -77,7 +76,7 @@ class Descent {
             if (is_among(first_.moved)) s.moved.emplace_back(n);
         }
         for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-            const ElementId e(i);
+            const CellId e(i);
             if (std::binary_search(first_.loaded_elements.begin(), first_.loaded_elements.end(),
                                    ancestors_[i]))
                 s.loaded_elements.push_back(e);
@@ -96,7 +95,7 @@ class Descent {
 
     // A part of the ancestor in the plane of one of its faces lies in that face.
     bool lies_in_loaded_plane(const topology::Mesh& mesh, FaceId f) const {
-        const auto [begin, end] = planes_.equal_range(ancestors_[f.element.index()]);
+        const auto [begin, end] = planes_.equal_range(ancestors_[f.cell.index()]);
         return std::any_of(begin, end, [&](const auto& plane) {
             bool all = true;
             for (int p = 0; p < mesh.face_size(f); ++p)
@@ -106,9 +105,9 @@ class Descent {
     }
 
     Selections first_;
-    std::vector<std::set<NodeId>> roots_;
-    std::vector<ElementId> ancestors_;
-    std::multimap<ElementId, Plane> planes_;  // of loaded faces
+    std::vector<std::set<VertexId>> roots_;
+    std::vector<CellId> ancestors_;
+    std::multimap<CellId, Plane> planes_;  // of loaded faces
 };
 
 }  // namespace incise::physics

@@ -21,13 +21,13 @@ using topology::Mesh;
 using topology::MeshEdit;
 
 struct Edge {
-    ElementId element;
-    NodeId a, b;
+    CellId element;
+    VertexId a, b;
 };
 
 Edge random_edge(const Mesh& mesh, test::Random& random) {
     const auto elements = living_elements(mesh);
-    const ElementId e = elements[random.below(elements.size())];
+    const CellId e = elements[random.below(elements.size())];
     const std::size_t a = random.below(4), b = (a + 1 + random.below(3)) % 4;
     return {e, mesh.corners(e)[a], mesh.corners(e)[b]};
 }
@@ -41,9 +41,9 @@ ChangeSet bisect(Mesh& mesh, const Edge& edge, double t) {
 /// The edge of an element with the two nodes that are where `is_end` says.
 template <class Predicate>
 Edge edge_where(const Mesh& mesh, Predicate is_edge) {
-    for (const ElementId e : living_elements(mesh))
-        for (const NodeId a : mesh.corners(e))
-            for (const NodeId b : mesh.corners(e))
+    for (const CellId e : living_elements(mesh))
+        for (const VertexId a : mesh.corners(e))
+            for (const VertexId b : mesh.corners(e))
                 if (a != b && is_edge(mesh.rest_position(a), mesh.rest_position(b)))
                     return {e, a, b};
     ADD_FAILURE() << "no such edge";
@@ -51,7 +51,7 @@ Edge edge_where(const Mesh& mesh, Predicate is_edge) {
 }
 
 void open_all_inner_faces(Mesh& mesh, MeshEdit& edit) {
-    for (const ElementId e : living_elements(mesh))
+    for (const CellId e : living_elements(mesh))
         for (int f = 0; f < 4; ++f)
             if (mesh.neighbor({e, f}).is_valid()) edit.open({e, f});
 }
@@ -178,7 +178,7 @@ struct LoadedTetrahedron {
     Model model;
 
     explicit LoadedTetrahedron(int loaded_face)
-        : descent(mesh, {{}, {}, {{ElementId(0), loaded_face}}, {ElementId(0)}}),
+        : descent(mesh, {{}, {}, {{CellId(0), loaded_face}}, {CellId(0)}}),
           model(mesh, table_of_one_law(soft_law), boundary_conditions()) {}
 
     void apply(const ChangeSet& changes) {
@@ -211,10 +211,10 @@ TEST(Bisection, DoesNotLoadAFaceThatItMade) {
                     SCOPED_TRACE(testing::Message() << "face " << loaded_face << ", edge " << i
                                                     << " to " << j << is_opened_at_once);
                     LoadedTetrahedron body(loaded_face);
-                    const auto corners = body.mesh.corners(ElementId(0));
-                    const Edge edge{ElementId(0), corners[i], corners[j]};
+                    const auto corners = body.mesh.corners(CellId(0));
+                    const Edge edge{CellId(0), corners[i], corners[j]};
                     // Ids that are given out again are not mistaken for those they were before.
-                    const Edge other{ElementId(0), corners[j], corners[(i + 1) % 4]};
+                    const Edge other{CellId(0), corners[j], corners[(i + 1) % 4]};
                     if (other.a != other.b) {
                         take_back(body.mesh, body.model,
                                   follow(body.model, bisect(body.mesh, other, 0.5)));
@@ -243,7 +243,7 @@ TEST(Bisection, CarriesLoadsThroughDivisionsOfParts) {
                 const Edge edge = random_edge(body.mesh, random);
                 edit.bisect(edge.element, edge.a, edge.b, random.uniform(0.3, 0.7));
                 // Removed at once: its parts remain.
-                if (edge.element == ElementId(0) && random.below(8) == 0) edit.remove(edge.element);
+                if (edge.element == CellId(0) && random.below(8) == 0) edit.remove(edge.element);
             }
             if (k > 0) open_all_inner_faces(body.mesh, edit);
             body.apply(edit.commit());
@@ -258,7 +258,7 @@ TEST(Bisection, AndJoiningTogetherKeepLoadsAndState) {
         Mesh mesh = Mesh::build(test::mesh_families()[1].data).mesh;  // two by a face
         const FaceId shared = [&] {
             for (int f = 0;; ++f)
-                if (mesh.neighbor({ElementId(0), f}).is_valid()) return FaceId{ElementId(0), f};
+                if (mesh.neighbor({CellId(0), f}).is_valid()) return FaceId{CellId(0), f};
         }();
         const FaceId other = mesh.neighbor(shared);
         MeshEdit opening(mesh);
@@ -277,7 +277,7 @@ TEST(Bisection, AndJoiningTogetherKeepLoadsAndState) {
 
         MeshEdit edit(mesh);
         const auto divide = [&](FaceId f, int from, int to) {
-            return edit.bisect(f.element, mesh.face_corner(f, from), mesh.face_corner(f, to), 0.5)
+            return edit.bisect(f.cell, mesh.face_corner(f, from), mesh.face_corner(f, to), 0.5)
                 .node;
         };
         const auto position_in = [&](FaceId f, const Vec3& X) {
@@ -295,7 +295,7 @@ TEST(Bisection, AndJoiningTogetherKeepLoadsAndState) {
         if (!is_divided_first) divide(shared, 0, 1);
         const ChangeSet changes = edit.commit();
         const FollowedEdit done = follow(model, changes);
-        for (const NodeId n : mesh.nodes())
+        for (const VertexId n : mesh.nodes())
             EXPECT_LE((model.mesh_positions()[n.index()] - mesh.rest_position(n)).norm(), 1e-15);
         EXPECT_LE((sum_of(loads_at_rest(model)) - force).norm(), 1e-13 * force.norm());
         set_state(model, rest_state(model.fragments()));
@@ -311,7 +311,7 @@ TEST(Bisection, AddsNoForceToALoadOnNodes) {
     const auto loaded = nodes_where(mesh, is_loaded);
     const Vec3 force(1.0, -2.0, 0.5);
     BoundaryConditions s;
-    s.loads.push_back({"hooks", NodalLoad{NodeSet(loaded), force, {}}, {}});
+    s.loads.push_back({"hooks", NodalLoad{VertexSet(loaded), force, {}}, {}});
     Model model(mesh, table_of_one_law(soft_law), s);
     const std::vector<Vec3> before = loads_at_rest(model);
     const Vec3 total = static_cast<double>(loaded.size()) * force;
@@ -346,8 +346,8 @@ TEST(Bisection, HoldsOnlyNodesAddedBetweenHeldOnes) {
         Mesh mesh = cube();
         BoundaryConditions s;
         s.gravity = {0.0, 0.0, -9.81};
-        s.constraints = {holding("left", NodeSet(nodes_where(mesh, left))),
-                         holding("right", NodeSet(nodes_where(mesh, right)))};
+        s.constraints = {holding("left", VertexSet(nodes_where(mesh, left))),
+                         holding("right", VertexSet(nodes_where(mesh, right)))};
         Model model(mesh, table_of_one_law(soft_law), s);
         const ChangeSet changes = bisect(
             mesh, edge_where(mesh, [&](const Vec3& a, const Vec3& b) { return c.a(a) && c.b(b); }),
@@ -359,12 +359,12 @@ TEST(Bisection, HoldsOnlyNodesAddedBetweenHeldOnes) {
         model.apply(model.mesh(), opened);
         double time = 0.0;
         step(model, time, 1e-3);
-        const NodeId born = changes.nodes_added.front().id;
-        std::vector<NodeId> copies{born};
+        const VertexId born = changes.nodes_added.front().id;
+        std::vector<VertexId> copies{born};
         for (const auto& record : opened.nodes_added)
             if (record.sources[0].node == born) copies.push_back(record.id);
         ASSERT_GT(copies.size(), 1u);
-        for (const NodeId n : copies)
+        for (const VertexId n : copies)
             EXPECT_EQ(model.mesh_velocities()[n.index()].z() == 0.0, c.is_held);
     }
 }
@@ -377,10 +377,10 @@ TEST(Constraints, IndexedEditByEditEqualFreshOnes) {
         test::Random random(15);
         std::vector<Constraint> constraints(3);
         for (std::size_t i = 0; i < 3; ++i) {
-            std::vector<NodeId> some;
-            for (const NodeId n : all)
+            std::vector<VertexId> some;
+            for (const VertexId n : all)
                 if (random.below(2) == 0) some.push_back(n);
-            constraints[i] = holding("support " + std::to_string(i), NodeSet(some));
+            constraints[i] = holding("support " + std::to_string(i), VertexSet(some));
             for (std::size_t c = 0; c < 3; ++c) constraints[i].components[c] = c == i;
         }
         BoundaryConditions s;

@@ -109,12 +109,12 @@ const T* chosen(const std::vector<T>& from, std::size_t which) {
 }
 
 /// Whether all elements are tetrahedra at the corners of this one.
-bool is_among_tetrahedra(const Mesh& mesh, ElementId e) {
+bool is_among_tetrahedra(const Mesh& mesh, CellId e) {
     const auto corners = mesh.corners(e);
-    return std::all_of(corners.begin(), corners.end(), [&](NodeId n) {
-        std::vector<ElementId> star;
+    return std::all_of(corners.begin(), corners.end(), [&](VertexId n) {
+        std::vector<CellId> star;
         mesh.star(n, star);
-        return std::all_of(star.begin(), star.end(), [&](ElementId other) {
+        return std::all_of(star.begin(), star.end(), [&](CellId other) {
             return mesh.kind(other) == topology::CellKind::tetrahedron;
         });
     });
@@ -123,11 +123,11 @@ bool is_among_tetrahedra(const Mesh& mesh, ElementId e) {
 /// What there is nothing of is left out.
 void carry_out(const Operation& operation, const Mesh& mesh, MeshEdit& edit,
                std::size_t num_old_elements) {
-    const auto is_old = [&](ElementId e) { return e.index() < num_old_elements; };
-    std::vector<ElementId> elements = living_elements(mesh);
+    const auto is_old = [&](CellId e) { return e.index() < num_old_elements; };
+    std::vector<CellId> elements = living_elements(mesh);
     switch (operation.act) {
         case Act::remove: {
-            std::erase_if(elements, [&](ElementId e) { return !is_old(e); });
+            std::erase_if(elements, [&](CellId e) { return !is_old(e); });
             if (const auto* e = chosen(elements, operation.which)) edit.remove(*e);
             return;
         }
@@ -139,21 +139,20 @@ void carry_out(const Operation& operation, const Mesh& mesh, MeshEdit& edit,
         case Act::close: {
             auto pairs = test::open_pairs(mesh);
             std::erase_if(pairs, [&](const FacePair& pair) {
-                return !is_old(pair.a.element) || !is_old(pair.b.element) ||
-                       pair.a.element == pair.b.element;
+                return !is_old(pair.a.cell) || !is_old(pair.b.cell) || pair.a.cell == pair.b.cell;
             });
             if (const auto* pair = chosen(pairs, operation.which)) edit.close(pair->a, pair->b);
             return;
         }
         case Act::divide: {
-            std::erase_if(elements, [&](ElementId e) { return !is_among_tetrahedra(mesh, e); });
+            std::erase_if(elements, [&](CellId e) { return !is_among_tetrahedra(mesh, e); });
             const auto* e = chosen(elements, operation.which);
             if (!e) return;
             const auto [a, b] = topology::traits(mesh.kind(*e)).edges[operation.edge];
             const auto corner = [&](int k) {
                 return mesh.corners(*e)[static_cast<std::size_t>(k)];
             };
-            const NodeId from = corner(a), to = corner(b);
+            const VertexId from = corner(a), to = corner(b);
             edit.bisect(*e, from, to, operation.eighths / 8.0);
             return;
         }
@@ -296,7 +295,7 @@ class FollowingBody {
         const Balance before(model_);
         const ModelSnapshot snapshot = now();
         std::vector<Carried> carried(mesh_.mesh().element_capacity());
-        for (const ElementId e : living_elements(mesh_.mesh()))
+        for (const CellId e : living_elements(mesh_.mesh()))
             carried[e.index()] = carried_by(model_, e);
 
         const auto changes = mesh_.carry_out(step);

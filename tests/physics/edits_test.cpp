@@ -36,8 +36,8 @@ BoundaryConditions boundary_conditions(const Selections& selected) {
     BoundaryConditions s;
     s.gravity = {0.3, 0.2, -9.81};
     s.damping = 2.0;
-    const Constraint held = holding("held", NodeSet(selected.held));
-    Constraint moved = holding("moved", NodeSet(selected.moved), {false, true, true});
+    const Constraint held = holding("held", VertexSet(selected.held));
+    Constraint moved = holding("moved", VertexSet(selected.moved), {false, true, true});
     moved.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.1, 0.2, 0.3)}});
     moved.angle = TimeCurve<double>({{0.0, 0.0}, {1.0, 0.5}});
     s.constraints = {held, moved};
@@ -87,7 +87,7 @@ class EditedBody {
     void edit_and_check() {
         const Balance before(model_);
         std::vector<Carried> carried(mesh_.element_capacity());
-        for (const ElementId e : living_elements(mesh_)) carried[e.index()] = carried_by(model_, e);
+        for (const CellId e : living_elements(mesh_)) carried[e.index()] = carried_by(model_, e);
         const MeshSnapshot mesh_before(mesh_);
         const ModelSnapshot model_before(model_, time);
 
@@ -158,9 +158,9 @@ class EditedBody {
 
     double shortest_edge() const {
         double shortest = std::numeric_limits<double>::infinity();
-        for (const ElementId e : living_elements(mesh_))
-            for (const NodeId a : mesh_.corners(e))
-                for (const NodeId b : mesh_.corners(e))
+        for (const CellId e : living_elements(mesh_))
+            for (const VertexId a : mesh_.corners(e))
+                for (const VertexId b : mesh_.corners(e))
                     if (a < b)
                         shortest = std::min(
                             shortest, (mesh_.rest_position(a) - mesh_.rest_position(b)).norm());
@@ -251,8 +251,8 @@ TEST(RandomEdits, UndoneLeaveTheMotionAsItWas) {
         Mesh mesh = Mesh::build(data).mesh;
         const Mesh untouched = Mesh::build(data).mesh;
         BoundaryConditions all = boundary_conditions(selections(mesh));
-        std::vector<NodeId> loaded = nodes_where(mesh, [](const Vec3& x) { return x.z() > 0.5; });
-        all.loads.push_back({"nodes", NodalLoad{NodeSet(loaded), {1.0, -2.0, 3.0}, {}}, {}});
+        std::vector<VertexId> loaded = nodes_where(mesh, [](const Vec3& x) { return x.z() > 0.5; });
+        all.loads.push_back({"nodes", NodalLoad{VertexSet(loaded), {1.0, -2.0, 3.0}, {}}, {}});
         Model model(mesh, table, all), reference(untouched, table, all);
         test::Random random(5);
         const BodyState state = random_state(mesh, random, 0.0, 0.1);
@@ -306,7 +306,7 @@ TEST(ModelApply, RefusesAnEditOutOfTurn) {
     const ModelSnapshot before(model, 0.0);
     const auto remove = [&](std::size_t e) {
         topology::MeshEdit edit(mesh);
-        edit.remove(ElementId(e));
+        edit.remove(CellId(e));
         return edit.commit();
     };
     const ChangeSet first = remove(0), second = remove(1);
@@ -336,7 +336,7 @@ TEST(ModelApply, LeavesEmptyEditsAlone) {
 // Opens all inner faces whose nodes lie at x at rest.
 ChangeSet open_plane(Mesh& mesh, double x) {
     topology::MeshEdit edit(mesh);
-    for (const ElementId e : living_elements(mesh))
+    for (const CellId e : living_elements(mesh))
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             bool is_chosen = mesh.neighbor({e, f}).is_valid();
             for (int p = 0; p < mesh.face_size({e, f}); ++p)
@@ -359,7 +359,7 @@ TEST(ModelApply, JoiningKeepsMassMomentumAndCentreOfMass) {
     const auto pieces = topology::components(mesh).of_element;
     BodyState state = rest_state(mesh);
     for (std::size_t n = 0; n < mesh.node_capacity(); ++n) {
-        const int piece = pieces[mesh.incident_element(NodeId(n)).index()];
+        const int piece = pieces[mesh.incident_element(VertexId(n)).index()];
         state.positions[n] += (piece == 0 ? 1.0 : -2.0) * Vec3(0.1, 0.02, 0.03);
         state.velocities[n] = (piece == 0 ? 1.0 : -0.5) * Vec3(1.0, 2.0, -1.0);
     }

@@ -60,7 +60,7 @@ Outcome solve(const Experiment& experiment, int n) {
                                                  size, {count(0), count(1), count(2)}))
             .mesh;
     const auto plate = [&](double z) {
-        return NodeSet(nodes_where(
+        return VertexSet(nodes_where(
             mesh, [&](const Vec3& X) { return std::abs(X.z() - z) < 1e-9 * size.z(); }));
     };
     Constraint top = holding("top", plate(size.z()));

@@ -17,9 +17,9 @@ Constraint hold(std::vector<std::size_t> nodes,
                 std::array<bool, 3> components = {true, true, true}) {
     Constraint constraint;
     constraint.name = "hold";
-    std::vector<NodeId> ids;
+    std::vector<VertexId> ids;
     for (const std::size_t n : nodes) ids.emplace_back(n);
-    constraint.nodes = NodeSet(ids);
+    constraint.nodes = VertexSet(ids);
     constraint.components = components;
     return constraint;
 }

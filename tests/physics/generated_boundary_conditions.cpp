@@ -12,7 +12,7 @@ using topology::Mesh;
 
 namespace {
 
-std::array<double, 3> offset_of(const Mesh& mesh, NodeId n) {
+std::array<double, 3> offset_of(const Mesh& mesh, VertexId n) {
     const Vec3& X = mesh.rest_position(n);
     return {X.x(), X.y(), X.z()};
 }
@@ -24,11 +24,11 @@ Vec3 area_vector(const Mesh& mesh, FaceId f) {
     return (X(1) - X(0)).cross(X(last) - X(0));
 }
 
-std::vector<NodeId> living_nodes(const Mesh& mesh) {
+std::vector<VertexId> living_nodes(const Mesh& mesh) {
     return nodes_where(mesh, [](const Vec3&) { return true; });
 }
 
-Constraint moving(NodeSet nodes) {
+Constraint moving(VertexSet nodes) {
     Constraint constraint = holding("moved", std::move(nodes), {true, false, true});
     constraint.displacement =
         TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.002, 0.001, -0.003)}});
@@ -70,14 +70,14 @@ rc::Gen<GeneratedBoundaryConditions> generated_boundary_conditions() {
 Acting::Acting(const Mesh& mesh, const GeneratedBoundaryConditions& chosen) {
     std::map<Place, int> num_nodes;
     const auto nodes = living_nodes(mesh);
-    for (const NodeId n : nodes) {
+    for (const VertexId n : nodes) {
         places_[offset_of(mesh, n)] = {};
         ++num_nodes[offset_of(mesh, n)];
     }
     const auto elements = living_elements(mesh);
     const auto for_places = [&](const std::vector<std::size_t>& numbers, auto visit) {
         for (const std::size_t i : numbers)
-            for (const NodeId n : mesh.corners(elements[i % elements.size()]))
+            for (const VertexId n : mesh.corners(elements[i % elements.size()]))
                 visit(places_.at(offset_of(mesh, n)));
     };
     for_places(chosen.held_elements, [](Membership& place) { place.is_held = true; });
@@ -98,19 +98,19 @@ Acting::Acting(const Mesh& mesh, const GeneratedBoundaryConditions& chosen) {
         regions_.push_back(mesh.region(elements[i % elements.size()]));
 
     at_start_ = select(mesh);
-    std::vector<NodeId> loaded;
-    for (const NodeId n : nodes)
+    std::vector<VertexId> loaded;
+    for (const VertexId n : nodes)
         if (places_.at(offset_of(mesh, n)).is_loaded) loaded.push_back(n);
     at_start_.loads.insert(at_start_.loads.begin(),
-                           {"nodes", NodalLoad{NodeSet(loaded), force_on_node, {}}, {}});
+                           {"nodes", NodalLoad{VertexSet(loaded), force_on_node, {}}, {}});
 }
 
 void Acting::follow(const Mesh& mesh, const topology::ChangeSet& changes) {
-    for (const topology::NodeRecord& record : changes.nodes_added) {
+    for (const topology::VertexRecord& record : changes.nodes_added) {
         if (record.num_sources < 2) continue;  // a copy, or back again: its place is known
         Membership of_all{true, true, false, ~0u};
         for (int s = 0; s < record.num_sources; ++s) {
-            const NodeId source = record.sources[static_cast<std::size_t>(s)].node;
+            const VertexId source = record.sources[static_cast<std::size_t>(s)].node;
             const Membership& of_source = places_.at(offset_of(mesh, source));
             of_all.is_held &= of_source.is_held;
             of_all.is_moved &= of_source.is_moved;
@@ -123,24 +123,24 @@ void Acting::follow(const Mesh& mesh, const topology::ChangeSet& changes) {
 BoundaryConditions Acting::now(const Mesh& mesh, std::span<const double> masses) const {
     BoundaryConditions acting = select(mesh);
     std::map<Place, double> mass_at;
-    std::vector<NodeId> loaded;
-    for (const NodeId n : living_nodes(mesh))
+    std::vector<VertexId> loaded;
+    for (const VertexId n : living_nodes(mesh))
         if (places_.at(offset_of(mesh, n)).is_loaded) {
             loaded.push_back(n);
             mass_at[offset_of(mesh, n)] += masses[n.index()];
         }
     std::vector<double> shares;
-    for (const NodeId n : loaded)
+    for (const VertexId n : loaded)
         shares.push_back(masses[n.index()] / mass_at.at(offset_of(mesh, n)));
     acting.loads.insert(acting.loads.begin(),
-                        {"nodes", NodalLoad{NodeSet(loaded), force_on_node, shares}, {}});
+                        {"nodes", NodalLoad{VertexSet(loaded), force_on_node, shares}, {}});
     return acting;
 }
 
 /// All but the forces on nodes.
 BoundaryConditions Acting::select(const Mesh& mesh) const {
-    std::vector<NodeId> held, moved;
-    for (const NodeId n : living_nodes(mesh)) {
+    std::vector<VertexId> held, moved;
+    for (const VertexId n : living_nodes(mesh)) {
         const Membership& place = places_.at(offset_of(mesh, n));
         if (place.is_held) held.push_back(n);
         if (place.is_moved) moved.push_back(n);
@@ -154,14 +154,14 @@ BoundaryConditions Acting::select(const Mesh& mesh) const {
             if ((of_all >> i & 1u) && area_vector(mesh, f).dot(face_areas_[i]) > 0.0)
                 faces.push_back(f);
     }
-    std::vector<ElementId> elements;
-    for (const ElementId e : living_elements(mesh))
+    std::vector<CellId> elements;
+    for (const CellId e : living_elements(mesh))
         if (std::find(regions_.begin(), regions_.end(), mesh.region(e)) != regions_.end())
             elements.push_back(e);
     BoundaryConditions acting;
     acting.gravity = {0.0, 0.0, -9.81};
     acting.damping = 2.0;
-    acting.constraints = {holding("held", NodeSet(held)), moving(NodeSet(moved))};
+    acting.constraints = {holding("held", VertexSet(held)), moving(VertexSet(moved))};
     acting.loads = {{"wind", TractionLoad{faces, traction}, {}},
                     {"gas", PressureLoad{faces, pressure}, {}},
                     {"field", BodyLoad{elements, body_force}, {}}};

@@ -57,7 +57,7 @@ std::vector<Case> cases_of(const std::vector<std::string>& kinds) {
 std::vector<Constraint> plates(const Case& c, const Mesh& mesh, double ramp_time) {
     const double height = c.size().z();
     const auto at = [&](double z) {
-        return NodeSet(
+        return VertexSet(
             nodes_where(mesh, [&](const Vec3& X) { return std::abs(X.z() - z) < 1e-9 * height; }));
     };
     Constraint top = holding("top", at(height));
@@ -114,7 +114,7 @@ class PlateRelaxation {
         BoundaryConditions s;
         if (c.kind() == "cantilever_gravity") {
             s.gravity = {0.0, -c.at("g"), 0.0};
-            s.constraints = {holding("root", NodeSet(nodes_where(mesh_, [](const Vec3& X) {
+            s.constraints = {holding("root", VertexSet(nodes_where(mesh_, [](const Vec3& X) {
                                          return std::abs(X.z()) < 1e-9;
                                      })))};
             s.damping = 0.35 / unit_;  // near critical for the first bending mode
@@ -173,7 +173,7 @@ TEST(HybMssStatic, PlatesFeelForceAndTorqueOfTheReference) {
 
 topology::ChangeSet open_notch(Mesh& mesh, const Case& c) {
     topology::MeshEdit edit(mesh);
-    for (const ElementId e : living_elements(mesh))
+    for (const CellId e : living_elements(mesh))
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             if (!mesh.neighbor({e, f}).is_valid()) continue;
             Vec3 centre = Vec3::Zero();
@@ -188,7 +188,7 @@ topology::ChangeSet open_notch(Mesh& mesh, const Case& c) {
 /// How far apart in z two nodes are that were one, at the mouth of the notch.
 double opening(const Mesh& mesh, const Model& model, const Vec3& X) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const NodeId n :
+    for (const VertexId n :
          nodes_where(mesh, [&](const Vec3& at) { return (at - X).norm() < 1e-9; })) {
         low = std::min(low, model.positions()[n.index()].z());
         high = std::max(high, model.positions()[n.index()].z());

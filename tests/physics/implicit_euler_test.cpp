@@ -77,7 +77,7 @@ TEST(ImplicitEuler, ConvergesForStiffTissueNearRest) {
                 BoundaryConditions s = cantilever(mesh, damping);
                 s.constraints.push_back(holding(
                     "other end",
-                    NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() > 0.199; }))));
+                    VertexSet(nodes_where(mesh, [](const Vec3& X) { return X.x() > 0.199; }))));
                 Model model(mesh, table_of_one_law(law), s);
                 EXPECT_NO_THROW(run(model, 0.01, 30));
             }
@@ -92,7 +92,7 @@ TEST(ImplicitEuler, ConvergesWhileViscousTissueRelaxes) {
             const Mesh mesh = bar();
             BoundaryConditions s;
             Constraint hand = holding(
-                "hand", NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() > 0.199; })));
+                "hand", VertexSet(nodes_where(mesh, [](const Vec3& X) { return X.x() > 0.199; })));
             hand.displacement =
                 TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {0.2, Vec3(0.2 * strain, 0.0, 0.0)}});
             s.constraints = {holding("clamp", left_end(mesh)), hand};
@@ -196,7 +196,7 @@ TEST(ImplicitEuler, RelaxesViscousStress) {
     BoundaryConditions s;
     Constraint hand = holding(
         "hand",
-        NodeSet(nodes_where(mesh, [](const Vec3& X) { return std::abs(X.x() - 0.2) < 1e-9; })));
+        VertexSet(nodes_where(mesh, [](const Vec3& X) { return std::abs(X.x() - 0.2) < 1e-9; })));
     hand.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1e-6, {0.02, 0, 0}}});
     s.constraints = {holding("clamp", left_end(mesh)), hand};
     const auto table = table_of_one_material(HyperElasticLinks{soft_law, 0.4, {{0.4, tau}}});
@@ -224,7 +224,7 @@ TEST(ImplicitEuler, FollowsEditsAsABodyBuiltAfresh) {
         ImplicitEuler integrator;
         for (int i = 0; i < 3; ++i) integrator.step(model, 0.02 * i, 0.02);
         topology::MeshEdit edit(mesh);
-        for (const ElementId e : living_elements(mesh))
+        for (const CellId e : living_elements(mesh))
             for (int f = 0; f < mesh.num_faces(e); ++f) {
                 bool is_chosen = mesh.neighbor({e, f}).is_valid();
                 for (int p = 0; p < mesh.face_size({e, f}); ++p) {

@@ -244,7 +244,7 @@ TEST(DrivenMotion, KeepsTheEnergyLedger) {
         s.gravity = {0.0, 0.5, -2.0};
         s.damping = 1.5;
         Constraint constraint =
-            holding("hand", NodeSet(nodes_where(mesh, [](const Vec3& x) { return x.z() == 0; })));
+            holding("hand", VertexSet(nodes_where(mesh, [](const Vec3& x) { return x.z() == 0; })));
         // Smooth from rest: the kinks of linear keys have an error of their own.
         std::vector<std::pair<double, Vec3>> keys;
         for (int i = 0; i <= 2000; ++i) {

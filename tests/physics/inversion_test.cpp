@@ -236,9 +236,9 @@ TEST(Winding, IsNotFoundWhereBoundariesOverlap) {
                     .mesh;
     // The one on whose far side angles jump from pi to -pi.
     const Vec3 axis = Vec3::Ones().normalized(), across = Vec3(1, -1, 0).normalized();
-    for (const ElementId e : living_elements(mesh)) {
+    for (const CellId e : living_elements(mesh)) {
         Vec3 centre = Vec3::Zero();
-        for (const NodeId n : mesh.corners(e)) centre += 0.25 * mesh.rest_position(n);
+        for (const VertexId n : mesh.corners(e)) centre += 0.25 * mesh.rest_position(n);
         const double angle = std::atan2(axis.cross(across).dot(centre), across.dot(centre));
         if (std::abs(angle) < 2.8) continue;
         topology::MeshEdit edit(mesh);

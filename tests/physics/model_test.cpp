@@ -53,7 +53,7 @@ TEST(LumpedMass, GivesEachCornerAQuarterOfAnElement) {
         const Model model(mesh, table);
         std::vector<double> masses(mesh.node_capacity(), 0.0);
         double mass = 0.0, volume = 0.0;
-        for (const ElementId e : living_elements(mesh)) {
+        for (const CellId e : living_elements(mesh)) {
             std::array<Vec3, 4> X;
             for (std::size_t k = 0; k < 4; ++k) X[k] = mesh.rest_position(mesh.corners(e)[k]);
             const double element_volume = topology::tetrahedron_volume(X[0], X[1], X[2], X[3]);
@@ -61,7 +61,7 @@ TEST(LumpedMass, GivesEachCornerAQuarterOfAnElement) {
                 table.materials[static_cast<std::size_t>(mesh.region(e))].density;
             volume += element_volume;
             mass += density * element_volume;
-            for (const NodeId n : mesh.corners(e))
+            for (const VertexId n : mesh.corners(e))
                 masses[n.index()] += 0.25 * density * element_volume;
         }
         for (std::size_t n = 0; n < masses.size(); ++n)
@@ -236,9 +236,9 @@ TEST(Model, NamesAnElementOfANonFiniteState) {
     const std::string text = message_of([&] { model.integrate(0.0, 1e-3); });
     EXPECT_TRUE(has(text, "no longer at a finite place")) << text;
     EXPECT_TRUE(
-        has(text, "element " + std::to_string(mesh.label(mesh.incident_element(NodeId(3))))))
+        has(text, "element " + std::to_string(mesh.label(mesh.incident_element(VertexId(3))))))
         << text;
-    EXPECT_TRUE(has(text, "node " + std::to_string(mesh.label(NodeId(3))))) << text;
+    EXPECT_TRUE(has(text, "node " + std::to_string(mesh.label(VertexId(3))))) << text;
 }
 
 TEST(Model, GivesTheSameBitsEachTime) {

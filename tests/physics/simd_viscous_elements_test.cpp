@@ -269,7 +269,7 @@ TEST(SimdViscousElements, FollowABodyInEitherPrecision) {
         const double taken_before = model.dissipated_energy();
         step(model, time, dt);
         double taken = 0.0;
-        for (const ElementId e : living_elements(mesh)) {
+        for (const CellId e : living_elements(mesh)) {
             ViscousKernel kernel = kernels[mesh.region(e)];
             kernel.begin_step(dt);
             Tetrahedron X, x, next;
@@ -279,7 +279,8 @@ TEST(SimdViscousElements, FollowABodyInEitherPrecision) {
                 x[k] = before.positions[n.index()];
                 next[k] = model.positions()[n.index()];
             }
-            taken += kernel.advance(kernel.precompute(X), x, next, expected.of(e));
+            taken += kernel.advance(kernel.precompute(X), x, next,
+                                    expected.of(with_number_of<ElementId>(e)));
         }
         double scale = 0.0;
         for (const double x : expected.values()) scale = std::max(scale, std::abs(x));

@@ -24,7 +24,7 @@ class Tethers final : public ForceTerm {
                     double /*time*/, std::span<Vec3> forces) const override {
         for (std::size_t n = range.begin; n < range.end; ++n)
             if (body.masses[n] > 0.0)
-                forces[n] += stiffness_ * (body.mesh.rest_position(NodeId(n)) - positions[n]);
+                forces[n] += stiffness_ * (body.mesh.rest_position(VertexId(n)) - positions[n]);
     }
     void visit_tangents(std::span<const Vec3> positions, double /*time*/,
                         TangentSink& sink) const override {
@@ -105,7 +105,7 @@ TEST(VariableSteps, LetTheForceActOverTheMeanOfTwoSteps) {
             outer(model.outer_forces().begin(), model.outer_forces().end());
         integrator.step(model, time, dt);
         const double acting = last == 0.0 ? dt : 0.5 * (last + dt);
-        for (const NodeId n : mesh.nodes()) {
+        for (const VertexId n : mesh.nodes()) {
             Vec3 expected = before[n.index()] + acting / model.masses()[n.index()] *
                                                     (elastic[n.index()] + outer[n.index()]);
             if (model.constraints().of_node(n.index())) expected.x() = expected.z() = 0.0;
@@ -119,9 +119,9 @@ TEST(VariableSteps, LetTheForceActOverTheMeanOfTwoSteps) {
 
 /// Gives the same impulse to all nodes of a set.
 struct Push final : VelocityProjection {
-    NodeId node;
+    VertexId node;
     Vec3 impulse;
-    Push(NodeId of_node, const Vec3& of_impulse) : node(of_node), impulse(of_impulse) {}
+    Push(VertexId of_node, const Vec3& of_impulse) : node(of_node), impulse(of_impulse) {}
     void project(Model& model, double, double) override {
         std::vector<Vec3> impulses(model.positions().size(), Vec3::Zero());
         impulses[node.index()] = impulse;
@@ -134,7 +134,7 @@ TEST(Stages, ImpulsesChangeMomentumAndWork) {
     const Vec3 impulse(1e-3, -2e-3, 5e-4);
     Model model(mesh, table_of_one_law(soft_law));
     SemiImplicitEuler integrator;
-    Push push(NodeId(3), impulse);
+    Push push(VertexId(3), impulse);
     integrator.add_projection(push);
     const double dt = 0.1 * model.stable_step();
     const Totals before = model.totals();
@@ -150,7 +150,7 @@ TEST(Stages, ConstraintsBearTheImpulsesOnTheirNodes) {
     const Vec3 impulse(1e-3, -2e-3, 5e-4);
     BoundaryConditions held;
     held.constraints.push_back(holding("left", left_end(mesh)));
-    const NodeId node = held.constraints[0].nodes.members()[0].node;
+    const VertexId node = held.constraints[0].nodes.members()[0].node;
     Model model(mesh, table_of_one_law(soft_law), held);
     SemiImplicitEuler integrator;
     Push push(node, impulse);
@@ -177,7 +177,7 @@ TEST(ForceTerms, BearTheWeightWithConstraintsInStatics) {
         Statics statics;
         statics.step(model, 0.0, 0.0);
         Vec3 sum = Vec3::Zero();
-        for (const NodeId n : mesh.nodes())
+        for (const VertexId n : mesh.nodes())
             sum += stiffness * (mesh.rest_position(n) - model.positions()[n.index()]);
         EXPECT_GT(sum.z(), 0.1 * 9.81 * model.totals().mass);
         EXPECT_NEAR(sum.z() + model.reactions()[0].force.z(), 9.81 * model.totals().mass,
@@ -196,7 +196,7 @@ TEST(ForceTerms, KeepTheEnergyBalanceOfExplicitSteps) {
     set_state(model, random_state(mesh, random, 0.0, 0.1));
     const auto energy_of_tethers = [&] {
         double energy = 0.0;
-        for (const NodeId n : mesh.nodes())
+        for (const VertexId n : mesh.nodes())
             energy += 0.5 * stiffness *
                       (mesh.rest_position(n) - model.positions()[n.index()]).squaredNorm();
         return energy;

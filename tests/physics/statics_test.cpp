@@ -17,13 +17,13 @@ namespace {
 using topology::CellKind;
 using topology::Mesh;
 
-NodeSet nodes_at(const Mesh& mesh, double x) {
-    return NodeSet(nodes_where(mesh, [&](const Vec3& X) { return std::abs(X.x() - x) < 1e-9; }));
+VertexSet nodes_at(const Mesh& mesh, double x) {
+    return VertexSet(nodes_where(mesh, [&](const Vec3& X) { return std::abs(X.x() - x) < 1e-9; }));
 }
 
 topology::ChangeSet open_across(Mesh& mesh, double x, double up_to) {
     topology::MeshEdit edit(mesh);
-    for (const ElementId e : living_elements(mesh))
+    for (const CellId e : living_elements(mesh))
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             bool is_chosen = mesh.neighbor({e, f}).is_valid();
             for (int p = 0; p < mesh.face_size({e, f}); ++p) {
@@ -168,7 +168,7 @@ TEST(Statics, LeaveFreeComponentsAndRefusePushedOnes) {
         Model model(mesh, table_of_one_law(soft_law), s);
         BodyState state = rest_state(mesh);
         for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
-            if (mesh.rest_position(NodeId(n)).x() > 0.1001) state.positions[n].y() += 0.3;
+            if (mesh.rest_position(VertexId(n)).x() > 0.1001) state.positions[n].y() += 0.3;
         set_state(model, state);
         Statics statics;
         statics.step(model, 0.0, 1.0);
@@ -197,7 +197,7 @@ TEST(Statics, LeadAComponentThatIsHeldInPart) {
     BoundaryConditions s;
     Constraint tongs = holding(
         "tongs",
-        NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() == 0.0 && X.y() == 0.0; })));
+        VertexSet(nodes_where(mesh, [](const Vec3& X) { return X.x() == 0.0 && X.y() == 0.0; })));
     tongs.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.5, -0.3, 0.4)}});
     s.constraints = {tongs};
     Model model(mesh, table_of_one_law(soft_law), s);
@@ -212,9 +212,9 @@ TEST(Statics, FindTheEquilibriumOfBodiesFreeToSlide) {
     const Mesh mesh = bar();
     BoundaryConditions s;
     s.gravity = {0.0, 0.0, -5.0};
-    s.constraints = {holding("ice",
-                             NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.z() == 0.0; })),
-                             {false, false, true})};
+    s.constraints = {
+        holding("ice", VertexSet(nodes_where(mesh, [](const Vec3& X) { return X.z() == 0.0; })),
+                {false, false, true})};
     Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     statics.step(model, 0.0, 1.0);
@@ -247,7 +247,7 @@ TEST(Statics, FindAStableStateOfABucklingColumn) {
 TEST(Statics, LeadABodyThatIsHeldAllOver) {
     const Mesh mesh = bar();
     BoundaryConditions s;
-    Constraint all = holding("all", NodeSet(nodes_where(mesh, [](const Vec3&) { return true; })));
+    Constraint all = holding("all", VertexSet(nodes_where(mesh, [](const Vec3&) { return true; })));
     all.displacement = TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, Vec3(0.1, 0, 0)}});
     s.constraints = {all};
     Model model(mesh, table_of_one_law(soft_law), s);

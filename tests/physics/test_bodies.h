@@ -160,7 +160,7 @@ inline void step(Model& model, double& time, double dt) {
 }
 
 /// A constraint that holds its nodes where they are at rest.
-inline Constraint holding(std::string name, NodeSet nodes,
+inline Constraint holding(std::string name, VertexSet nodes,
                           std::array<bool, 3> components = {true, true, true}) {
     Constraint constraint;
     constraint.name = std::move(name);
@@ -171,20 +171,20 @@ inline Constraint holding(std::string name, NodeSet nodes,
 
 /// Living nodes whose rest position is where `is_inside` says.
 template <class Mesh, class Predicate>
-std::vector<NodeId> nodes_where(const Mesh& mesh, Predicate is_inside) {
-    std::vector<NodeId> nodes;
-    for (const NodeId n : mesh.nodes())
+auto nodes_where(const Mesh& mesh, Predicate is_inside) {
+    std::vector<decltype(*mesh.nodes().begin())> nodes;
+    for (const auto n : mesh.nodes())
         if (is_inside(mesh.rest_position(n))) nodes.push_back(n);
     return nodes;
 }
-inline NodeSet left_end(const topology::Mesh& mesh) {
-    return NodeSet(nodes_where(mesh, [](const Vec3& X) { return X.x() == 0.0; }));
+inline VertexSet left_end(const topology::Mesh& mesh) {
+    return VertexSet(nodes_where(mesh, [](const Vec3& X) { return X.x() == 0.0; }));
 }
 
 template <class Mesh>
-std::vector<ElementId> living_elements(const Mesh& mesh) {
-    std::vector<ElementId> elements;
-    for (const ElementId e : mesh.elements()) elements.push_back(e);
+auto living_elements(const Mesh& mesh) {
+    std::vector<decltype(*mesh.elements().begin())> elements;
+    for (const auto e : mesh.elements()) elements.push_back(e);
     return elements;
 }
 

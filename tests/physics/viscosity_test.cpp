@@ -233,9 +233,9 @@ TEST(Viscosity, CreepsUnderASuddenLoad) {
     BoundaryConditions s;
     s.damping = 2e4;  // of vibrations, whose frequency is about as much; its drag on creep is small
     for (int c = 0; c < 3; ++c)
-        s.constraints.push_back(
-            holding("plane", NodeSet(nodes_where(mesh, [c](const Vec3& x) { return x[c] == 0.0; })),
-                    {c == 0, c == 1, c == 2}));
+        s.constraints.push_back(holding(
+            "plane", VertexSet(nodes_where(mesh, [c](const Vec3& x) { return x[c] == 0.0; })),
+            {c == 0, c == 1, c == 2}));
     std::vector<FaceId> loaded;
     for (const auto f : topology::boundary_faces(mesh)) {
         bool is_on_end = true;
@@ -245,7 +245,8 @@ TEST(Viscosity, CreepsUnderASuddenLoad) {
     }
     s.loads.push_back({"pull", TractionLoad{loaded, {stress, 0.0, 0.0}}, {}});
     Model model(mesh, table_of_one_material(HyperElasticLinks{stvk, 0.4, series}, 5e-5), s);
-    const NodeId end = nodes_where(mesh, [](const Vec3& x) { return x == Vec3(1, 1, 1); }).front();
+    const VertexId end =
+        nodes_where(mesh, [](const Vec3& x) { return x == Vec3(1, 1, 1); }).front();
     double time = 0.0, next_check = 0.1;
     const double dt = 0.7 * model.stable_step();
     while (time < 8.0) {

@@ -68,7 +68,7 @@ TEST(ViscousEdits, ShareTheMemoryAmongCopiesOfANode) {
     BodyWithPast body(3);
     const std::vector<Vec3> before = body.forces();
     MeshEdit edit(body.mesh);
-    for (const ElementId e : living_elements(body.mesh))
+    for (const CellId e : living_elements(body.mesh))
         for (int f = 0; f < body.mesh.num_faces(e); ++f)
             if (body.mesh.neighbor({e, f}).is_valid()) edit.open({e, f});
     const ChangeSet changes = edit.commit();

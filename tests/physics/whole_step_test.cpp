@@ -34,8 +34,8 @@ std::vector<FaceId> faces_where(const Mesh& mesh, Predicate is_inside) {
     return faces;
 }
 
-NodeSet nodes_at_height(const Mesh& mesh, double z) {
-    return NodeSet(nodes_where(mesh, [&](const Vec3& X) { return X.z() == z; }));
+VertexSet nodes_at_height(const Mesh& mesh, double z) {
+    return VertexSet(nodes_where(mesh, [&](const Vec3& X) { return X.z() == z; }));
 }
 
 BoundaryConditions held_moved_and_loaded(const Mesh& mesh) {
@@ -128,7 +128,7 @@ TEST(WholeStep, OfAnEditedBodyEqualsAFreshOne) {
         Mesh mesh = cube(kind);
         Model edited(mesh, viscous_or_hybrid(kind), held_moved_and_loaded(mesh));
         topology::MeshEdit edit(mesh);
-        for (std::size_t e = 5; e < mesh.element_capacity(); e += 97) edit.remove(ElementId(e));
+        for (std::size_t e = 5; e < mesh.element_capacity(); e += 97) edit.remove(CellId(e));
         const auto changes = edit.commit();
         ASSERT_TRUE(changes.nodes_added.empty());  // else copies would share forces
         edited.apply(edited.mesh(), changes);
@@ -143,7 +143,7 @@ TEST(WholeStep, HasLoadsOfEditedBodiesBeforeTheirForces) {
     Mesh mesh = bar();
     Model edited(mesh, table_of_one_law(soft_law), held_moved_and_loaded(mesh));
     topology::MeshEdit edit(mesh);
-    edit.remove(ElementId(0));
+    edit.remove(CellId(0));
     edited.apply(edited.mesh(), edit.commit());
     edited.begin_step();
     const Model built(mesh, table_of_one_law(soft_law), held_moved_and_loaded(mesh));

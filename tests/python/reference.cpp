@@ -29,8 +29,8 @@ void run(const char* file, const char* name) {
     while (!simulation.is_finished()) simulation.step();
     const topology::Mesh& mesh = simulation.mesh();
     std::ofstream out(name, std::ios::binary);
-    for (const NodeId n : mesh.nodes()) write(out, simulation.world().positions()[n.index()]);
-    for (const NodeId n : mesh.nodes()) write(out, simulation.world().velocities()[n.index()]);
+    for (const VertexId n : mesh.nodes()) write(out, simulation.world().positions()[n.index()]);
+    for (const VertexId n : mesh.nodes()) write(out, simulation.world().velocities()[n.index()]);
     std::printf("%llu %zu\n", static_cast<unsigned long long>(simulation.num_steps()),
                 simulation.edits().size());
 }

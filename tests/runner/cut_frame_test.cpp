@@ -58,8 +58,8 @@ std::string from_file(const std::string& text) {
 test::FragmentShape shape_in_file(const Mesh& mesh, const FragmentMesh& fragments) {
     std::vector<std::int64_t> row(mesh.element_capacity(), -1);
     std::int64_t next = 0;
-    for (const ElementId e : mesh.elements()) row[e.index()] = next++;
-    return test::shape_of(fragments, [&](ElementId e) { return row[e.index()]; });
+    for (const CellId e : mesh.elements()) row[e.index()] = next++;
+    return test::shape_of(fragments, [&](CellId e) { return row[e.index()]; });
 }
 
 struct Tools {

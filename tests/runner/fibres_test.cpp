@@ -83,7 +83,7 @@ plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
     Simulation simulation(scenario);
     const topology::Mesh& mesh = simulation.mesh();
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        const auto c = static_cast<std::size_t>(mesh.label(ElementId(i)));
+        const auto c = static_cast<std::size_t>(mesh.label(CellId(i)));
         const Vec3 given(vectors_of(frame).data() + 3 * c);
         EXPECT_LE((simulation.model().fibres()[i] - given.normalized()).norm(), 1e-15);
     }
@@ -96,19 +96,19 @@ plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
     Simulation again(
         folder.scenario(body_file + fibred_material + "fibre_array = \"fibre\"\n" + pulled));
     std::map<std::vector<double>, Vec3> expected;  // by location
-    const auto location = [](const topology::Mesh& m, ElementId e) {
+    const auto location = [](const topology::Mesh& m, CellId e) {
         std::vector<double> corners;
         for (const auto n : m.corners(e))
             for (const double x : m.rest_position(n)) corners.push_back(x);
         return corners;
     };
     const auto& fragments = simulation.model().fragments();
-    for (const ElementId e : mesh.elements())
+    for (const CellId e : mesh.elements())
         expected[location(mesh, e)] =
             simulation.model().fibres()[fragments.fragment_of_cell(e).index()];
     ASSERT_EQ(again.mesh().num_elements(), mesh.num_elements());
     const auto& read = again.model().fragments();
-    for (const ElementId e : again.mesh().elements())
+    for (const CellId e : again.mesh().elements())
         EXPECT_EQ(again.model().fibres()[read.fragment_of_cell(e).index()],
                   expected.at(location(again.mesh(), e)));
 }

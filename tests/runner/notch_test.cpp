@@ -117,11 +117,11 @@ Vec3 position_of(const Simulation& simulation, const Vec3& X) {
     double nearest = -std::numeric_limits<double>::infinity();
     Vec3 position = X;
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-        if (!mesh.is_alive(ElementId(i))) continue;
+        if (!mesh.is_alive(CellId(i))) continue;
         Eigen::Matrix4d rest;
         Eigen::Matrix<double, 3, 4> current;
         for (int k = 0; k < 4; ++k) {
-            const NodeId n = mesh.corners(ElementId(i))[static_cast<std::size_t>(k)];
+            const VertexId n = mesh.corners(CellId(i))[static_cast<std::size_t>(k)];
             rest.col(k) << mesh.rest_position(n), 1.0;
             current.col(k) = simulation.model().positions()[n.index()];
         }
@@ -201,7 +201,7 @@ std::map<double, double> mouth(const Simulation& simulation) {
     std::map<std::pair<double, double>, std::vector<double>> heights;  // by y and z at rest
     for (std::size_t i = 0; i < mesh.node_capacity(); ++i) {
         const Vec3& X = mesh.rest_positions()[i];
-        if (mesh.is_alive(NodeId(i)) && X.x() == 0.0)
+        if (mesh.is_alive(VertexId(i)) && X.x() == 0.0)
             heights[{X.y(), X.z()}].push_back(simulation.world().positions()[i].z());
     }
     std::map<double, double> openings;

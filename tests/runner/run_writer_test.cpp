@@ -257,8 +257,8 @@ TEST_F(RunFiles, FramesHoldTheState) {
     const auto& model = simulation_.model();
     const io::Frame frame = build_frame(model, simulation_.time(), scenario_.output.fields);
     EXPECT_EQ(frame.time, 0.2);
-    std::vector<NodeId> nodes;
-    std::vector<ElementId> elements;
+    std::vector<VertexId> nodes;
+    std::vector<CellId> elements;
     const auto data = topology::to_mesh_data(mesh(), model.mesh_positions(), &nodes, &elements);
     EXPECT_EQ(frame.mesh.points, data.points);
     EXPECT_EQ(frame.mesh.corners, data.corners);
@@ -269,7 +269,7 @@ TEST_F(RunFiles, FramesHoldTheState) {
     double mass = 0.0;
     Vec3 momentum = Vec3::Zero();
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const NodeId n = nodes[i];
+        const VertexId n = nodes[i];
         const Vec3 &x = model.positions()[n.index()], &X = mesh().rest_position(n);
         EXPECT_EQ(frame.mesh.points[i], x);
         const double m = values<double>(points, "mass")[i];
@@ -295,7 +295,7 @@ TEST_F(RunFiles, FramesHoldTheState) {
     double energy = 0.0;
     for (std::size_t i = 0; i < elements.size(); ++i) {
         EXPECT_EQ(values<std::int64_t>(cells, "element_id")[i], mesh().label(elements[i]));
-        const auto result = model.element_result(elements[i]);
+        const auto result = model.element_result(model.fragments().fragment_of_cell(elements[i]));
         EXPECT_EQ(values<float>(cells, "J")[i], static_cast<float>(result.volume_ratio));
         energy += static_cast<double>(values<float>(cells, "energy_density")[i]) * result.volume;
         // von Mises from the components, by its textbook formula.

@@ -67,7 +67,7 @@ TEST(SplittingBlade, PartsTheBodyWhileItMoves) {
     // Of the fragments that are left.
     const topology::FragmentMesh& fragments = simulation.model().fragments();
     double volume_away = 0.0;
-    for (const ElementId cell : simulation.mesh().elements())
+    for (const CellId cell : simulation.mesh().elements())
         if (!fragments.is_at_home(cell))
             volume_away += topology::rest_volume(simulation.mesh(), cell);
     EXPECT_GT(volume_away, 0.0);

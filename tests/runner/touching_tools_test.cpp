@@ -128,7 +128,7 @@ path = [{ time = 0, at = [0.05, 0.05, 0.11] }, { time = 0.2, at = [0.05, 0.05, 0
     double sum = 0.0;
     for (std::size_t n = 0; n < frame.mesh.points.size(); ++n) {
         sum += forces[3 * n + 2];
-        const bool is_on_top = simulation.mesh().rest_position(NodeId(n)).z() > 0.09;
+        const bool is_on_top = simulation.mesh().rest_position(VertexId(n)).z() > 0.09;
         EXPECT_NEAR(pressures[n], is_on_top ? force / 0.01 : 0.0, 0.02 * force / 0.01);
     }
     EXPECT_GT(force, 0.1);

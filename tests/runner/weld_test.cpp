@@ -120,7 +120,7 @@ fibre_array = "fibre"
     const auto& mesh = simulation.mesh();
     ASSERT_EQ(mesh.num_elements(), frame.mesh.num_cells());
     for (std::size_t i = 0; i < mesh.num_elements(); ++i) {
-        const ElementId e(i);
+        const CellId e(i);
         const auto c = static_cast<std::size_t>(mesh.label(e));
         EXPECT_EQ(mesh.region(e), frame.mesh.regions[c]);
         EXPECT_LE(

@@ -40,7 +40,7 @@ const Mesh& cube(topology::CellKind kind) {
 
 using Rule = std::function<bool(const Vec3&)>;
 
-bool is_in_regions(const Mesh& mesh, const Selection& where, ElementId e) {
+bool is_in_regions(const Mesh& mesh, const Selection& where, CellId e) {
     return !where.regions ||
            std::count(where.regions->begin(), where.regions->end(), mesh.region(e)) > 0;
 }
@@ -50,24 +50,24 @@ bool is_in_regions(const Mesh& mesh, const Selection& where, ElementId e) {
 void expect_selects(const Selection& where, const Rule& rule) {
     for (const auto kind : {topology::CellKind::tetrahedron, topology::CellKind::hexahedron}) {
         const Mesh& mesh = cube(kind);
-        const auto holds = [&](NodeId n) { return rule(mesh.rest_position(n)); };
-        std::vector<NodeId> nodes;
+        const auto holds = [&](VertexId n) { return rule(mesh.rest_position(n)); };
+        std::vector<VertexId> nodes;
         for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
-            if (holds(NodeId(n))) nodes.emplace_back(n);
+            if (holds(VertexId(n))) nodes.emplace_back(n);
         EXPECT_EQ(select_nodes(mesh, where), nodes);
         std::vector<FaceId> faces;
         for (const FaceId f : topology::boundary_faces(mesh)) {
             int count = 0;
             for (int p = 0; p < mesh.face_size(f); ++p) count += holds(mesh.face_corner(f, p));
-            if (count == mesh.face_size(f) && is_in_regions(mesh, where, f.element))
+            if (count == mesh.face_size(f) && is_in_regions(mesh, where, f.cell))
                 faces.push_back(f);
         }
         EXPECT_EQ(select_faces(mesh, where), faces);
-        std::vector<ElementId> elements;
+        std::vector<CellId> elements;
         for (std::size_t e = 0; e < mesh.element_capacity(); ++e) {
-            const auto corners = mesh.corners(ElementId(e));
+            const auto corners = mesh.corners(CellId(e));
             if (std::all_of(corners.begin(), corners.end(), holds) &&
-                is_in_regions(mesh, where, ElementId(e)))
+                is_in_regions(mesh, where, CellId(e)))
                 elements.emplace_back(e);
         }
         EXPECT_EQ(select_elements(mesh, where), elements);
@@ -125,14 +125,14 @@ TEST(Selection, ElementsAndFacesAreOfOneRegionOnly) {
     Selection where;
     where.regions = {1};
     EXPECT_EQ(select_nodes(mesh, where).size(), 6u);
-    EXPECT_EQ(select_elements(mesh, where), (std::vector{ElementId(0), ElementId(2)}));
+    EXPECT_EQ(select_elements(mesh, where), (std::vector{CellId(0), CellId(2)}));
     EXPECT_EQ(select_faces(mesh, where).size(), 6u);
     where.regions = {2};
     EXPECT_EQ(select_nodes(mesh, where).size(), 4u);
-    EXPECT_EQ(select_elements(mesh, where), std::vector{ElementId(1)});
+    EXPECT_EQ(select_elements(mesh, where), std::vector{CellId(1)});
     const auto faces = select_faces(mesh, where);
     EXPECT_EQ(faces.size(), 2u);
-    for (const FaceId f : faces) EXPECT_EQ(f.element, ElementId(1));
+    for (const FaceId f : faces) EXPECT_EQ(f.cell, CellId(1));
 }
 
 TEST(Selection, RegionalBodyForceIsForceTimesVolume) {
@@ -224,7 +224,7 @@ TEST(Selection, NodesAreNumbersOfTheSource) {
         Selection where;
         where.nodes = {1, 30, 124};
         std::set<std::vector<double>> positions;
-        for (const NodeId n : select_nodes(mesh, where)) {
+        for (const VertexId n : select_nodes(mesh, where)) {
             const Vec3& x = mesh.rest_position(n);
             positions.insert({x.x(), x.y(), x.z()});
         }

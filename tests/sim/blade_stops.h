@@ -66,11 +66,11 @@ inline World box_of(const StoppedCut& c, std::uint64_t seed) {
     def.solver = c.solver;
     World world(std::move(def));
     // Both ends, so that each part is held when the cut is through.
-    std::vector<NodeId> ends;
-    for (const NodeId n : world.mesh().nodes())
+    std::vector<VertexId> ends;
+    for (const VertexId n : world.mesh().nodes())
         if (const double z = world.mesh().rest_position(n).z(); z < 1e-9 || z > size.z() - 1e-9)
             ends.push_back(n);
-    world.add_constraint({.name = "ends", .nodes = physics::NodeSet(std::move(ends))});
+    world.add_constraint({.name = "ends", .nodes = physics::VertexSet(std::move(ends))});
     return world;
 }
 

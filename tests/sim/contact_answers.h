@@ -137,11 +137,11 @@ inline void append(topology::MeshData& all, const topology::MeshData& more) {
     all.points_may_coincide = true;
 }
 
-inline std::vector<ElementId> elements_where(const World& world, const Part& is_in) {
-    std::vector<ElementId> elements;
-    for (const ElementId e : world.mesh().elements()) {
+inline std::vector<CellId> elements_where(const World& world, const Part& is_in) {
+    std::vector<CellId> elements;
+    for (const CellId e : world.mesh().elements()) {
         Vec3 centre = Vec3::Zero();
-        for (const NodeId n : world.mesh().corners(e)) centre += world.mesh().rest_position(n);
+        for (const VertexId n : world.mesh().corners(e)) centre += world.mesh().rest_position(n);
         if (is_in(centre / 4.0)) elements.push_back(e);
     }
     return elements;
@@ -153,13 +153,12 @@ struct Motion {
     Vec3 displacement = Vec3::Zero();  ///< m
     Vec3 velocity = Vec3::Zero();      ///< m/s
 };
-inline Motion mean_motion(const World& world, const std::vector<ElementId>& elements,
-                          double density) {
+inline Motion mean_motion(const World& world, const std::vector<CellId>& elements, double density) {
     Motion sum;
-    for (const ElementId e : elements) {
+    for (const CellId e : elements) {
         const double mass = density * topology::rest_volume(world.mesh(), e);
         sum.mass += mass;
-        for (const NodeId n : world.mesh().corners(e)) {
+        for (const VertexId n : world.mesh().corners(e)) {
             sum.displacement +=
                 0.25 * mass * (world.positions()[n.index()] - world.mesh().rest_position(n));
             sum.velocity += 0.25 * mass * world.velocities()[n.index()];
@@ -171,11 +170,11 @@ inline Motion mean_motion(const World& world, const std::vector<ElementId>& elem
 }
 
 /// Adds a velocity to all of some elements, by a body force in one step.
-inline void launch(World& world, const std::vector<ElementId>& elements, double density,
+inline void launch(World& world, const std::vector<CellId>& elements, double density,
                    const Vec3& velocity, double dt) {
     const LoadId push = world.add_load(
         {.name = "push",
-         .kind = physics::BodyLoad{physics::ElementSet(elements), density / dt * velocity}});
+         .kind = physics::BodyLoad{physics::CellSet(elements), density / dt * velocity}});
     world.step(dt);
     world.remove_load(push);
 }
@@ -186,7 +185,7 @@ inline std::vector<FaceId> faces_where(World& world, const Part& is_in) {
     const topology::BoundarySurface& surface = world.surface();
     for (std::size_t t = 0; t < surface.triangles().size(); ++t)
         if (std::ranges::all_of(surface.triangles()[t],
-                                [&](NodeId n) { return is_in(world.mesh().rest_position(n)); }))
+                                [&](VertexId n) { return is_in(world.mesh().rest_position(n)); }))
             faces.push_back(surface.faces()[t]);
     std::ranges::sort(faces);
     return faces;

@@ -34,7 +34,7 @@ double wave_speed() { return std::sqrt(bar_solid.young / bar_solid.density); }
 double contact_time() { return 2.0 * bar_length / wave_speed(); }
 double wave_pressure(double speed) { return bar_solid.density * wave_speed() * speed; }
 
-std::vector<ElementId> all_of(const World& world) {
+std::vector<CellId> all_of(const World& world) {
     return elements_where(world, [](const Vec3&) { return true; });
 }
 
@@ -54,7 +54,7 @@ TEST(ContactCollisions, EqualBarsCutFromOneSwapVelocities) {
     world.step(dt);
     const auto left = elements_where(world, [](const Vec3& x) { return x.x() < bar_length; });
     const auto right = elements_where(world, [](const Vec3& x) { return x.x() > bar_length; });
-    const auto velocity = [&](const std::vector<ElementId>& of) {
+    const auto velocity = [&](const std::vector<CellId>& of) {
         return mean_motion(world, of, bar_solid.density).velocity.x();
     };
     const double start = world.time();

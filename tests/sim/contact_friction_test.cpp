@@ -79,7 +79,7 @@ World slowly_tilted(double degrees) {
         const auto all = elements_where(world, [](const Vec3&) { return true; });
         world.add_load(
             {.name = "gravity",
-             .kind = physics::BodyLoad{physics::ElementSet(all), solid.density * gravity * force},
+             .kind = physics::BodyLoad{physics::CellSet(all), solid.density * gravity * force},
              .factor = physics::TimeCurve<double>({{from, 0.0}, {to, 1.0}})});
     };
     pull(-std::cos(angle) * Vec3::UnitZ(), 0.0, 0.15);
@@ -121,7 +121,7 @@ TEST(ContactFriction, SlidingFluttersAsItsEigenvaluesTell) {
 /// Moves nodes along x with a constant velocity.
 void push_along_x(World& world, double speed, const Part& part) {
     physics::Constraint push{.name = "push"};
-    push.nodes = physics::NodeSet(nodes_where(world, part));
+    push.nodes = physics::VertexSet(nodes_where(world, part));
     push.components = {true, false, false};
     push.displacement =
         physics::TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {1.0, speed * Vec3::UnitX()}});

@@ -16,7 +16,7 @@ namespace {
 void constrain(World& world, std::string name, std::array<bool, 3> components, const Part& part,
                double down = 0.0, double duration = 0.5) {
     physics::Constraint constraint{.name = std::move(name)};
-    constraint.nodes = physics::NodeSet(nodes_where(world, part));
+    constraint.nodes = physics::VertexSet(nodes_where(world, part));
     constraint.components = components;
     constraint.displacement =
         physics::TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {duration, -down * Vec3::UnitZ()}});
@@ -59,7 +59,7 @@ PressedCube press_cube(Plates plates, double friction, const CutWorld& cut) {
     PressedCube pressed{world.reaction(ConstraintId{0}).force.z(), {}};
     for (std::size_t n = 0; n < num_nodes; ++n)
         pressed.displacements.push_back(world.positions()[n] -
-                                        world.mesh().rest_position(NodeId(n)));
+                                        world.mesh().rest_position(VertexId(n)));
     return pressed;
 }
 
@@ -169,13 +169,13 @@ TEST(ContactPatch, OfTwoCubesBearsHalfOfThePressEach) {
     for (std::size_t t = 0; t < surface.triangles().size(); ++t) {
         if (!surface.is_cut()[t]) continue;
         const auto& [a, b, c] = surface.triangles()[t];
-        const auto X = [&](NodeId n) { return world.mesh().rest_position(n); };
-        for (const NodeId n : surface.triangles()[t])
+        const auto X = [&](VertexId n) { return world.mesh().rest_position(n); };
+        for (const VertexId n : surface.triangles()[t])
             areas[n.index()] += (X(b) - X(a)).cross(X(c) - X(a)).norm() / 6.0;
     }
     const std::vector<Vec3> forces = world.model().mesh_elastic_forces();
     std::size_t num_nodes = 0;
-    for (const NodeId n : world.mesh().nodes()) {
+    for (const VertexId n : world.mesh().nodes()) {
         if (areas[n.index()] == 0.0) continue;
         ++num_nodes;
         const double moved = world.positions()[n.index()].z() - world.mesh().rest_position(n).z();
@@ -203,11 +203,11 @@ PatchError patch_error(int below, int above) {
     const World world = press_column(std::move(mesh), strain, false);
     EXPECT_GT(world.report().contact.num_points, 20u);
     PatchError error;
-    for (const ElementId e : world.mesh().elements()) {
+    for (const CellId e : world.mesh().elements()) {
         const auto c = world.mesh().corners(e);
         Eigen::Matrix3d rest, now;
         for (int k = 0; k < 3; ++k) {
-            const NodeId n = c[static_cast<std::size_t>(k) + 1];
+            const VertexId n = c[static_cast<std::size_t>(k) + 1];
             rest.col(k) = world.mesh().rest_position(n) - world.mesh().rest_position(c[0]);
             now.col(k) = world.positions()[n.index()] - world.positions()[c[0].index()];
         }

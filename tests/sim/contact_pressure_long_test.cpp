@@ -23,7 +23,7 @@ constexpr double slab_extent = 60.0;    // of a slab, radii of the contact: it a
 void hold_graded(World& world, double extent, bool has_x = true) {
     const auto fix = [&](std::string name, std::array<bool, 3> components, const Part& part) {
         physics::Constraint constraint{.name = std::move(name)};
-        constraint.nodes = physics::NodeSet(nodes_where(world, part));
+        constraint.nodes = physics::VertexSet(nodes_where(world, part));
         constraint.components = components;
         world.add_constraint(std::move(constraint));
     };
@@ -58,9 +58,9 @@ class DrawnBall {
     Areas areas() {
         std::vector<double> area_at(world_.mesh().node_capacity());
         for (const auto& [p, q, r] : world_.surface().triangles()) {
-            const auto X = [&](NodeId n) { return world_.mesh().rest_position(n); };
+            const auto X = [&](VertexId n) { return world_.mesh().rest_position(n); };
             const Vec3 area = 0.5 * (X(q) - X(p)).cross(X(r) - X(p));
-            for (const NodeId n : {p, q, r}) area_at[n.index()] += 2.0 * area.norm() / 3.0;
+            for (const VertexId n : {p, q, r}) area_at[n.index()] += 2.0 * area.norm() / 3.0;
         }
         Areas sum;
         const auto forces = world_.contact_forces();
@@ -233,14 +233,14 @@ class TwoSpheres {
     std::vector<NodeForce> forces() {
         std::vector<double> areas(world_.mesh().node_capacity());
         for (const auto& [p, q, r] : world_.surface().triangles()) {
-            const auto X = [&](NodeId n) { return world_.mesh().rest_position(n); };
+            const auto X = [&](VertexId n) { return world_.mesh().rest_position(n); };
             const Vec3 area = 0.5 * (X(q) - X(p)).cross(X(r) - X(p));
             if (area.z() < 0.9 * area.norm()) continue;
-            for (const NodeId n : {p, q, r}) areas[n.index()] += area.norm() / 3.0;
+            for (const VertexId n : {p, q, r}) areas[n.index()] += area.norm() / 3.0;
         }
         const auto all = world_.model().mesh_elastic_forces();
         std::vector<NodeForce> forces;
-        for (const NodeId n : world_.mesh().nodes()) {
+        for (const VertexId n : world_.mesh().nodes()) {
             const Vec3& X = world_.mesh().rest_position(n);
             const double r = X.head<2>().norm();
             if (areas[n.index()] > 0.0 && r < 3.0 * a && X.z() <= 0.0)
@@ -281,7 +281,7 @@ class TwoSpheres {
         const auto fix = [&](std::string name, std::array<bool, 3> components, const Part& part,
                              double down = 0.0) {
             physics::Constraint constraint{.name = std::move(name)};
-            constraint.nodes = physics::NodeSet(nodes_where(world, part));
+            constraint.nodes = physics::VertexSet(nodes_where(world, part));
             constraint.components = components;
             constraint.displacement =
                 physics::TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {0.02, -down * Vec3::UnitZ()}});
@@ -359,10 +359,10 @@ struct Penny {
     }
 
   private:
-    static bool is_above(const World& world, NodeId n) {
-        const ElementId e = world.mesh().incident_element(n);
+    static bool is_above(const World& world, VertexId n) {
+        const CellId e = world.mesh().incident_element(n);
         double sum = 0.0;
-        for (const NodeId corner : world.mesh().corners(e))
+        for (const VertexId corner : world.mesh().corners(e))
             sum += world.mesh().rest_position(corner).z();
         return sum > 0.0;
     }
@@ -428,7 +428,7 @@ double tension_ratio(double friction, double angle) {
     world.add_load(std::move(load));
     const Vec3 end(std::sin(angle), 0.0, std::cos(angle)), out(end.z(), 0.0, -end.x());
     physics::Constraint draw{.name = "draw"};
-    draw.nodes = physics::NodeSet(nodes_where(world, [&](const Vec3& x) {
+    draw.nodes = physics::VertexSet(nodes_where(world, [&](const Vec3& x) {
         return x.dot(out) > straight - 1e-9 && x.dot(end) > 0.9 * drum;
     }));
     draw.displacement = physics::TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {0.04, 0.004 * out}});

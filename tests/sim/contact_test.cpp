@@ -30,7 +30,7 @@ TEST(Contact, OfAFreshCutExertsNoForce) {
         ASSERT_EQ(report.contact.num_points, 0u);
     }
     EXPECT_EQ(world.report().contact.dissipation, 0.0);
-    for (const NodeId n : world.mesh().nodes())
+    for (const VertexId n : world.mesh().nodes())
         EXPECT_LE((world.positions()[n.index()] - world.mesh().rest_position(n)).norm(),
                   1e-12 * size);
 }
@@ -43,7 +43,7 @@ TEST(Contact, ChangesNoBitUntilSomethingTouches) {
         a.step(0.8 * a.stable_step());
         b.step(0.8 * b.stable_step());
     }
-    for (const NodeId n : a.mesh().nodes())
+    for (const VertexId n : a.mesh().nodes())
         ASSERT_EQ(a.positions()[n.index()], b.positions()[n.index()]);
 }
 
@@ -70,8 +70,8 @@ TEST(Contact, ActsBetweenTetrahedraAndHexahedra) {
     def.material_of_region = {{0, 0}, {1, 1}};
     World world(std::move(def));
     const auto upper_nodes = nodes_where(world, [&](const Vec3& x) { return x.z() > top; });
-    world.add_load(
-        {.name = "push", .kind = physics::NodalLoad{physics::NodeSet(upper_nodes), {0, 0, -0.01}}});
+    world.add_load({.name = "push",
+                    .kind = physics::NodalLoad{physics::VertexSet(upper_nodes), {0, 0, -0.01}}});
     std::size_t num_points = 0;
     double deepest = 0.0;  // m
     while (world.time() < 0.15) {
@@ -81,7 +81,7 @@ TEST(Contact, ActsBetweenTetrahedraAndHexahedra) {
     }
     EXPECT_GT(num_points, 10u);
     EXPECT_LT(deepest, 1e-4);
-    for (const NodeId n : world.mesh().nodes())
+    for (const VertexId n : world.mesh().nodes())
         EXPECT_LT(world.positions()[n.index()].z(), world.mesh().rest_position(n).z() - 0.01);
 }
 
@@ -92,7 +92,7 @@ World pressed(WorldDef def) {
     World world = held(World(std::move(def)));
     physics::Constraint lid{.name = "lid"};
     lid.nodes =
-        physics::NodeSet(nodes_where(world, [](const Vec3& x) { return x.z() > size - 1e-9; }));
+        physics::VertexSet(nodes_where(world, [](const Vec3& x) { return x.z() > size - 1e-9; }));
     lid.displacement =
         physics::TimeCurve<Vec3>({{0.0, Vec3::Zero()}, {pressed_in, -pressed_by * Vec3::UnitZ()}});
     world.add_constraint(std::move(lid));
@@ -196,7 +196,7 @@ TEST(Contact, OfAFastSmallBallIsNotMissed) {
     world.set_tool_pose(ball, at({0.05, 0.05, size - 0.01}));
     EXPECT_GT(world.step(0.5 * world.stable_step()).num_parts, 10u);
     double above = 0.0;
-    for (const NodeId n : nodes_where(world, [](const Vec3& x) {
+    for (const VertexId n : nodes_where(world, [](const Vec3& x) {
              return x.z() == size && std::hypot(x.x() - 0.05, x.y() - 0.05) < 1e-9;
          }))
         above = world.positions()[n.index()].z();
@@ -309,7 +309,7 @@ double slide_on_slope(double slope, double friction) {
     constexpr double time = 0.2;
     run_until(world, time);
     Vec3 moved = Vec3::Zero();
-    for (const NodeId n : world.mesh().nodes())
+    for (const VertexId n : world.mesh().nodes())
         moved += world.positions()[n.index()] - world.mesh().rest_position(n);
     moved /= static_cast<double>(world.mesh().num_nodes());
     const double exact =
@@ -333,7 +333,7 @@ Held held_by_grasper(double max_force = std::numeric_limits<double>::infinity())
     def.damping = 20.0;
     World world(std::move(def));
     world.add_constraint({.name = "top",
-                          .nodes = physics::NodeSet(nodes_where(
+                          .nodes = physics::VertexSet(nodes_where(
                               world, [](const Vec3& x) { return x.z() > size - 1e-9; }))});
     const ToolId grasper =
         world.add_tool({"grasper", cutting::Grasper{cutting::Sphere{0.03}, max_force}});
@@ -346,7 +346,7 @@ TEST(Contact, OfAGrasperCarriesTissueAndFeelsItsForce) {
     auto [world, grasper] = held_by_grasper();
     move_tool(world, grasper, {0.05, 0.05, -0.02}, 0.4);
     move_tool(world, grasper, {0.05, 0.05, -0.02}, 0.8);
-    for (const NodeId n : nodes_where(world, [](const Vec3& x) {
+    for (const VertexId n : nodes_where(world, [](const Vec3& x) {
              return x.z() == 0.0 && (x - Vec3(0.05, 0.05, 0.0)).norm() < 0.029;
          }))
         EXPECT_NEAR(world.positions()[n.index()].z(), world.mesh().rest_position(n).z() - 0.02,
@@ -359,7 +359,7 @@ TEST(Contact, OfAGrasperCarriesTissueAndFeelsItsForce) {
     EXPECT_FALSE(world.is_grasper_closed(grasper));
     run_until(world, world.time() + 1.0);
     EXPECT_EQ(world.report().tools[0].force, Vec3(Vec3::Zero()));
-    for (const NodeId n : nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }))
+    for (const VertexId n : nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }))
         EXPECT_NEAR(world.positions()[n.index()].z(), 0.0, 1e-4);
 }
 

@@ -29,7 +29,7 @@ World pressed_world(const Pressed& c) {
     def.contact.friction = c.friction;
     World world(std::move(def));
     world.add_constraint({.name = "floor",
-                          .nodes = physics::NodeSet(
+                          .nodes = physics::VertexSet(
                               nodes_where(world, [](const Vec3& x) { return x.z() < 1e-9; }))});
     const auto top = nodes_where(world, [&](const Vec3& x) { return x.z() > height - 1e-9; });
     const ConstraintId plate = world.grasp("plate", top, at({0, 0, height}));

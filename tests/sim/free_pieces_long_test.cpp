@@ -19,9 +19,9 @@ World stretched_and_cut(double jitter, std::uint64_t seed) {
     constexpr double drawn_at = 0.1, held_until = 0.15;  // s
     WorldDef def;
     topology::Mesh mesh = topology::Mesh::build(test::jittered_cube(5, jitter, seed)).mesh;
-    for (const NodeId n : mesh.nodes()) {
+    for (const VertexId n : mesh.nodes()) {
         physics::Constraint drawn{.name = "drawn"};
-        drawn.nodes = physics::NodeSet({n});
+        drawn.nodes = physics::VertexSet({n});
         drawn.displacement = physics::TimeCurve<Vec3>(
             {{0.0, Vec3::Zero()},
              {drawn_at, (stretch - Vec3::Ones()).cwiseProduct(mesh.rest_position(n))}});

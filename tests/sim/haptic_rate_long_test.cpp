@@ -24,14 +24,14 @@ World held_liver() {
     const auto nodes = nodes_where(world, [](const Vec3&) { return true; });
     const auto lowest_near = [&](const Vec3& x) {
         double z = x.z();
-        for (const NodeId n : nodes) {
+        for (const VertexId n : nodes) {
             const Vec3& other = world.mesh().rest_position(n);
             if ((other - x).head<2>().norm() < 0.008) z = std::min(z, other.z());
         }
         return z;
     };
     world.add_constraint(
-        {.name = "bed", .nodes = physics::NodeSet(nodes_where(world, [&](const Vec3& x) {
+        {.name = "bed", .nodes = physics::VertexSet(nodes_where(world, [&](const Vec3& x) {
                             return x.z() < lowest_near(x) + 0.01;
                         }))});
     return world;
@@ -44,7 +44,7 @@ class Ridge {
         std::vector<double> tops;
         for (int i = 0; i <= 100; ++i) {
             double top = -1.0;
-            for (const NodeId n : world.mesh().nodes()) {
+            for (const VertexId n : world.mesh().nodes()) {
                 const Vec3& x = world.mesh().rest_position(n);
                 if (std::hypot(x.x() - place(i), x.y()) < 0.007) top = std::max(top, x.z());
             }

@@ -31,10 +31,10 @@ inline WorldDef soft_body(Solver solver = Solver::semi_implicit_euler) {
     return def;
 }
 
-inline std::vector<NodeId> nodes_where(const World& world,
-                                       const std::function<bool(const Vec3&)>& is_in) {
-    std::vector<NodeId> nodes;
-    for (const NodeId n : world.mesh().nodes())
+inline std::vector<VertexId> nodes_where(const World& world,
+                                         const std::function<bool(const Vec3&)>& is_in) {
+    std::vector<VertexId> nodes;
+    for (const VertexId n : world.mesh().nodes())
         if (is_in(world.mesh().rest_position(n))) nodes.push_back(n);
     return nodes;
 }
@@ -42,7 +42,7 @@ inline std::vector<NodeId> nodes_where(const World& world,
 /// Holds a cube at its bottom.
 inline World held(World world) {
     world.add_constraint({.name = "floor",
-                          .nodes = physics::NodeSet(
+                          .nodes = physics::VertexSet(
                               nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }))});
     return world;
 }
@@ -110,7 +110,7 @@ class Session {
         if (i == 20)
             load_ = world_.add_load({.name = "push",
                                      .kind = physics::NodalLoad{
-                                         physics::NodeSet(nodes_where(
+                                         physics::VertexSet(nodes_where(
                                              world_, [](const Vec3& x) { return x.x() > 0.09; })),
                                          {1e-3, 0, 0}}});
         if (i == 30) world_.set_load_factor(load_, 0.5);

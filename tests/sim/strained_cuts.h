@@ -62,13 +62,13 @@ inline StrainedCut strained_cut(std::uint64_t seed) {
         if (!is_left(x) && !is_right(x)) x += random.vector(0.15 * StrainedCut::length / 8.0);
     topology::Mesh mesh = topology::Mesh::build(data).mesh;
     Constraint fixed{.name = "fixed"}, drawn{.name = "drawn"};
-    std::vector<NodeId> left, right;
-    for (const NodeId n : mesh.nodes()) {
+    std::vector<VertexId> left, right;
+    for (const VertexId n : mesh.nodes()) {
         if (is_left(mesh.rest_position(n))) left.push_back(n);
         if (is_right(mesh.rest_position(n))) right.push_back(n);
     }
-    fixed.nodes = NodeSet(left);
-    drawn.nodes = NodeSet(right);
+    fixed.nodes = VertexSet(left);
+    drawn.nodes = VertexSet(right);
     drawn.displacement = TimeCurve<Vec3>(
         {{0.0, Vec3::Zero()},
          {StrainedCut::drawn_at, (c.stretch - 1.0) * StrainedCut::length * Vec3::UnitX()}});

@@ -83,7 +83,7 @@ TEST_P(SutureOn, AnyMeshDrawsTwoBodiesTogetherAndKeepsTheirMomentum) {
     EXPECT_GT(draw(world, suture, 0.45 * size, 150), 1e-3);
     const physics::Totals totals = world.ledger().body_totals().totals;
     double scale = 0.0, mass = 0.0;
-    for (const NodeId n : world.mesh().nodes()) {
+    for (const VertexId n : world.mesh().nodes()) {
         const double m = world.masses()[n.index()];
         mass += m;
         scale += m * world.velocities()[n.index()].norm();
@@ -104,7 +104,7 @@ World held_cubes() {
     def.damping = 40.0;
     World world(std::move(def));
     world.add_constraint(
-        {.name = "sides", .nodes = physics::NodeSet(nodes_where(world, [](const Vec3& x) {
+        {.name = "sides", .nodes = physics::VertexSet(nodes_where(world, [](const Vec3& x) {
                               return x.x() < 1e-9 || x.x() > 2 * size + gap - 1e-9;
                           }))});
     return world;
@@ -135,7 +135,7 @@ World held_cubes_apart(double damping) {
     def.contact.self = false;
     World world(std::move(def));
     world.add_constraint(
-        {.name = "sides", .nodes = physics::NodeSet(nodes_where(world, [](const Vec3& x) {
+        {.name = "sides", .nodes = physics::VertexSet(nodes_where(world, [](const Vec3& x) {
                               return x.x() < 1e-9 || x.x() > 2 * size + gap - 1e-9;
                           }))});
     return world;
@@ -184,7 +184,7 @@ TEST(Suture, DrawsACutTogetherThatComesToRest) {
         def.contact.friction = 0.3;
         World world(std::move(def));
         world.add_constraint(
-            {.name = "sides", .nodes = physics::NodeSet(nodes_where(world, [&](const Vec3& x) {
+            {.name = "sides", .nodes = physics::VertexSet(nodes_where(world, [&](const Vec3& x) {
                                   return x.x() == 0.0 || x.x() == edges.x();
                               }))});
         cut_along(world, {0.0303, 0.0, 0.0}, Vec3::UnitX());
@@ -229,7 +229,7 @@ TEST(Suture, ThatIsSlackExertsNothing) {
     world.tie_suture(suture);
     draw(world, suture, size, 20);
     EXPECT_EQ(tension_of(world), 0.0);
-    for (const NodeId n : world.mesh().nodes())
+    for (const VertexId n : world.mesh().nodes())
         ASSERT_LT((world.positions()[n.index()] - world.mesh().rest_position(n)).norm(),
                   1e-14 * size);
 }

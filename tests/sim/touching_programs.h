@@ -29,7 +29,7 @@ class TouchingProgram {
 
     explicit TouchingProgram(std::uint64_t seed) : random_(seed), world_(body_of(seed)) {
         size_ = topology::mean_element_length(world_.mesh());
-        for (const NodeId n : world_.mesh().nodes()) box_.extend(world_.mesh().rest_position(n));
+        for (const VertexId n : world_.mesh().nodes()) box_.extend(world_.mesh().rest_position(n));
         add_probe();
         add_grasper();
         add_suture();

@@ -17,7 +17,7 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
     World& world = session.world();
     const std::string before = world.save();
     const double nan = std::nan(""), bound = world.rest_stable_step();
-    const physics::NodeSet floor(nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }));
+    const physics::VertexSet floor(nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }));
     const std::vector<std::pair<std::function<void()>, const char*>> misuses = {
         {[&] { world.step(0.0); }, "it must be above 0"},
         {[&] { world.step(-1e-3); }, "it must be above 0"},
@@ -55,30 +55,32 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
          },
          "is held in x by both 'floor' and 'more'"},
         {[&] { world.add_constraint({.name = "none"}); }, "it has no node"},
-        {[&] { world.grasp("hand", {NodeId(99999)}, {}); }, "there is no node 99999"},
+        {[&] { world.grasp("hand", {VertexId(99999)}, {}); }, "there is no node 99999"},
         {[&] { world.set_grasp_pose({0}, {}); }, "is no grasp"},
         {[&] { world.set_grasp_pose({9}, {}); }, "there is no constraint 9"},
         {[&] { world.release({9}); }, "there is no constraint 9"},
         {[&] { world.remove_load({4}); }, "there is no load 4"},
         {[&] {
              world.add_load(
-                 {.name = "wind", .kind = physics::TractionLoad{{{{ElementId(3), 9}}}, {}}});
+                 {.name = "wind", .kind = physics::TractionLoad{{{{CellId(3), 9}}}, {}}});
          },
          "is not on the surface"},
         {[&] {
-             physics::Constraint grip = physics::make_grip("hand", {NodeId(124)}, at({0, 0, size}));
+             physics::Constraint grip =
+                 physics::make_grip("hand", {VertexId(124)}, at({0, 0, size}));
              grip.gripped[NodeId(124)] = Vec3::Zero();
              world.add_constraint(std::move(grip));
          },
          "positions in a grip must be empty"},
         {[&] {
-             physics::Constraint grip = physics::make_grip("hand", {NodeId(124)}, at({0, 0, size}));
+             physics::Constraint grip =
+                 physics::make_grip("hand", {VertexId(124)}, at({0, 0, size}));
              grip.grip = physics::TimeCurve<Pose>({{1.0, at({})}, {0.0, at({})}});
              world.add_constraint(std::move(grip));
          },
          "times do not ascend"},
         {[&] {
-             physics::NodalLoad load{physics::NodeSet(std::vector{NodeId(124)}), {1, 0, 0}};
+             physics::NodalLoad load{physics::VertexSet(std::vector{VertexId(124)}), {1, 0, 0}};
              load.shares = {1.0};
              world.add_load({.name = "push", .kind = load});
          },
@@ -104,7 +106,7 @@ TEST(World, RefusesDefinitionsThatCannotBe) {
     const auto data = [](WorldDef& def) -> topology::MeshData& {
         return std::get<topology::MeshData>(def.mesh);
     };
-    const physics::NodeSet nowhere(std::vector{NodeId(100000)});
+    const physics::VertexSet nowhere(std::vector{VertexId(100000)});
     using Spoil = std::function<void(WorldDef&)>;
     const std::vector<std::pair<Spoil, const char*>> faults = {
         {[](WorldDef& d) { d.precision = static_cast<physics::Precision>(9); },
@@ -196,7 +198,7 @@ TEST(World, RefusesShapesCurvesAndFactorsThatCannotBe) {
         });
         EXPECT_NE(message.find(why), std::string::npos) << message << " for " << why;
     }
-    const physics::NodeSet top(nodes_where(world, [](const Vec3& x) { return x.z() == size; }));
+    const physics::VertexSet top(nodes_where(world, [](const Vec3& x) { return x.z() == size; }));
     using Curve = physics::TimeCurve<Vec3>;
     const std::vector<std::pair<physics::Constraint, const char*>> constraints = {
         {{.name = "a", .nodes = top, .displacement = Curve({{0.0, Vec3(nan, 0, 0)}})},

@@ -188,7 +188,7 @@ TEST(World, ResumesStaticsFromSavedBytesToTheBit) {
         if (i == 1)
             world.add_load({.name = "push",
                             .kind = physics::NodalLoad{
-                                physics::NodeSet(nodes_where(
+                                physics::VertexSet(nodes_where(
                                     world, [](const Vec3& x) { return x.z() == size; })),
                                 {1e-3, 0, 0}}});
         if (i == 3) {
@@ -267,7 +267,7 @@ TEST(World, GraspHoldsDeformedTissueAndCarriesIt) {
     while (world.time() < 0.05) world.step(0.5 * world.stable_step());
     const auto top = nodes_where(world, [](const Vec3& x) { return x.z() == size; });
     std::vector<Vec3> before;
-    for (const NodeId n : top) before.push_back(world.model().positions()[n.index()]);
+    for (const VertexId n : top) before.push_back(world.model().positions()[n.index()]);
     const Pose start = at({0.05, 0.05, size});
     const ConstraintId hand = world.grasp("hand", top, start);
     const Pose end{Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vec3::UnitZ())),
@@ -305,7 +305,7 @@ TEST(World, GraspHoldsTissueBesideAClamp) {
         world.step(0.5 * world.stable_step());
     }
     const auto positions = world.positions();
-    for (const NodeId n : nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }))
+    for (const VertexId n : nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }))
         EXPECT_EQ(positions[n.index()], world.mesh().rest_position(n));
     EXPECT_GT(world.reaction(hand).force.norm(), 0.0);
 }
@@ -322,7 +322,7 @@ TEST(World, LoadsActFromTheirFirstStep) {
     world.step(dt);
     EXPECT_NEAR(momentum(), 0.0, 1e-20);
     const LoadId load = world.add_load(
-        {.name = "push", .kind = physics::NodalLoad{physics::NodeSet(all), {2.0 * share, 0, 0}}});
+        {.name = "push", .kind = physics::NodalLoad{physics::VertexSet(all), {2.0 * share, 0, 0}}});
     world.step(dt);
     EXPECT_NEAR(momentum(), 2.0 * dt, 1e-12 * mass);
     world.set_load_factor(load, -0.5);
@@ -342,7 +342,7 @@ class Tethers : public physics::ForceTerm {
                     std::span<Vec3> forces) const override {
         for (std::size_t n = range.begin; n < range.end; ++n)
             if (body.masses[n] > 0.0)
-                forces[n] += stiffness * (body.mesh.rest_position(NodeId(n)) - positions[n]);
+                forces[n] += stiffness * (body.mesh.rest_position(VertexId(n)) - positions[n]);
     }
     double stiffness_bound(NodeId) const override { return stiffness; }
     void apply(const physics::BodyView&, const physics::BodyEdit&) override { ++num_edits; }
@@ -460,7 +460,7 @@ TEST(World, RefusesStepsAfterFailureUntilRestored) {
     world.add_load(
         {.name = "blast",
          .kind = physics::NodalLoad{
-             physics::NodeSet(nodes_where(world, [](const Vec3& x) { return x.z() > 0.09; })),
+             physics::VertexSet(nodes_where(world, [](const Vec3& x) { return x.z() > 0.09; })),
              {0, 0, 1e12}}});
     EXPECT_THROW(world.step(dt), PhysicsError);
     EXPECT_TRUE(world.has_failed());

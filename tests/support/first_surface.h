@@ -23,9 +23,9 @@ class FirstSurface {
     std::vector<FaceId> faults(const topology::Mesh& mesh) const;
 
   private:
-    using Nodes = std::vector<NodeId>;          // ascending
+    using Nodes = std::vector<VertexId>;        // ascending
     std::vector<Nodes> first_nodes_;            // by node, those before any edit that it is between
-    std::vector<ElementId> ancestors_;          // by element
+    std::vector<CellId> ancestors_;             // by element
     std::vector<std::vector<Nodes>> boundary_;  // by element before any edit, its boundary faces
 };
 

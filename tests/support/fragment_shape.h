@@ -25,12 +25,12 @@ struct FragmentShape {
 /// @param name  a number for each cell; numbers ascend with ids
 inline FragmentShape shape_of(
     const topology::FragmentMesh& fragments,
-    const std::function<std::int64_t(ElementId)>& name = [](ElementId e) { return e.value; }) {
+    const std::function<std::int64_t(CellId)>& name = [](CellId e) { return e.value; }) {
     FragmentShape shape;
     std::map<NodeId, std::vector<std::pair<std::int64_t, int>>> corners;
     for (const ElementId e : fragments.elements()) {
         std::vector<std::int64_t> cells;
-        for (const ElementId cell : fragments.cells_of(e)) cells.push_back(name(cell));
+        for (const CellId cell : fragments.cells_of(e)) cells.push_back(name(cell));
         std::sort(cells.begin(), cells.end());
         for (const std::int64_t cell : cells) shape.of_cell[cell] = {cells, fragments.share(e)};
         const auto nodes = fragments.corners(e);

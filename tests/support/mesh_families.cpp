@@ -81,19 +81,19 @@ MeshData mixed() {
     return data;
 }
 
-std::vector<ElementId> living_elements(const Mesh& mesh) {
-    std::vector<ElementId> alive;
-    for (const ElementId e : mesh.elements()) alive.push_back(e);
+std::vector<CellId> living_elements(const Mesh& mesh) {
+    std::vector<CellId> alive;
+    for (const CellId e : mesh.elements()) alive.push_back(e);
     return alive;
 }
 
-std::pair<NodeId, NodeId> longest_edge(const Mesh& mesh, ElementId e) {
-    std::pair<NodeId, NodeId> longest;
+std::pair<VertexId, VertexId> longest_edge(const Mesh& mesh, CellId e) {
+    std::pair<VertexId, VertexId> longest;
     double length = 0.01;  // of tiny elements rounding would make flat ones
     for (const auto& [a, b] : traits(mesh.kind(e)).edges) {
         if (a == b) continue;  // beyond the last
-        const NodeId from = mesh.corners(e)[static_cast<std::size_t>(a)];
-        const NodeId to = mesh.corners(e)[static_cast<std::size_t>(b)];
+        const VertexId from = mesh.corners(e)[static_cast<std::size_t>(a)];
+        const VertexId to = mesh.corners(e)[static_cast<std::size_t>(b)];
         const double l = (mesh.rest_position(from) - mesh.rest_position(to)).norm();
         if (l > length) {
             length = l;
@@ -103,11 +103,11 @@ std::pair<NodeId, NodeId> longest_edge(const Mesh& mesh, ElementId e) {
     return longest;
 }
 
-bool is_among_tetrahedra(const Mesh& mesh, NodeId n) {
-    std::vector<ElementId> star;
+bool is_among_tetrahedra(const Mesh& mesh, VertexId n) {
+    std::vector<CellId> star;
     mesh.star(n, star);
     return std::all_of(star.begin(), star.end(),
-                       [&](ElementId e) { return mesh.kind(e) == CellKind::tetrahedron; });
+                       [&](CellId e) { return mesh.kind(e) == CellKind::tetrahedron; });
 }
 
 }  // namespace
@@ -201,7 +201,7 @@ std::vector<const MeshFamily*> tetrahedral_families() { return families_of(CellK
 
 std::vector<FaceId> inner_faces(const Mesh& mesh) {
     std::vector<FaceId> faces;
-    for (const ElementId e : living_elements(mesh))
+    for (const CellId e : living_elements(mesh))
         for (int f = 0; f < mesh.num_faces(e); ++f)
             if (FaceId{e, f} < mesh.neighbor({e, f})) faces.push_back({e, f});
     return faces;
@@ -233,14 +233,13 @@ ChangeSet random_edit(Mesh& mesh, Random& random) {
     const std::size_t budget = 1 + (random.below(4) == 0 ? elements.size() / 20 : 0);
 
     if (kind == 0 || kind == 3) {  // removals, scattered or side by side
-        std::vector<ElementId> pending{elements[random.below(elements.size())]};
+        std::vector<CellId> pending{elements[random.below(elements.size())]};
         for (std::size_t i = 0; i < budget && !pending.empty(); ++i) {
-            const ElementId e = pending.back();
+            const CellId e = pending.back();
             pending.pop_back();
             if (!mesh.is_alive(e)) continue;
             for (int f = 0; f < mesh.num_faces(e); ++f)
-                if (mesh.neighbor({e, f}).is_valid())
-                    pending.push_back(mesh.neighbor({e, f}).element);
+                if (mesh.neighbor({e, f}).is_valid()) pending.push_back(mesh.neighbor({e, f}).cell);
             edit.remove(e);
         }
     }
@@ -249,7 +248,7 @@ ChangeSet random_edit(Mesh& mesh, Random& random) {
         const std::size_t count = faces.empty() ? 0 : 1 + random.below(3 * budget + 2);
         for (std::size_t i = 0; i < count; ++i) {
             const FaceId f = faces[random.below(faces.size())];
-            if (mesh.is_alive(f.element) && mesh.neighbor(f).is_valid()) edit.open(f);
+            if (mesh.is_alive(f.cell) && mesh.neighbor(f).is_valid()) edit.open(f);
         }
     }
     if (kind == 2) {  // all faces whose elements lie on two sides of a plane, in part of the body
@@ -260,19 +259,19 @@ ChangeSet random_edit(Mesh& mesh, Random& random) {
         if (through.is_valid()) {
             const Vec3 normal = random.vector(1.0);
             const Vec3& point = mesh.rest_position(mesh.face_corner(through, 0));
-            const auto side = [&](ElementId e) {
+            const auto side = [&](CellId e) {
                 Vec3 sum = Vec3::Zero();
-                for (const NodeId n : mesh.corners(e)) sum += mesh.rest_position(n) - point;
+                for (const VertexId n : mesh.corners(e)) sum += mesh.rest_position(n) - point;
                 return sum.dot(normal) > 0.0;
             };
             const double share = random.uniform();
             for (const FaceId f : inner_faces(mesh))
-                if (side(f.element) != side(mesh.neighbor(f).element) && random.uniform() < share)
+                if (side(f.cell) != side(mesh.neighbor(f).cell) && random.uniform() < share)
                     edit.open(f);
         }
     }
     if (kind == 5) {  // edges divided, near each other; then some of the faces about opened
-        ElementId e = elements[random.below(elements.size())];
+        CellId e = elements[random.below(elements.size())];
         for (std::size_t i = 0; i < 2 * budget; ++i) {
             if (mesh.kind(e) != CellKind::tetrahedron) break;
             const auto [from, to] = longest_edge(mesh, e);  // any other would soon make slivers
@@ -280,7 +279,7 @@ ChangeSet random_edit(Mesh& mesh, Random& random) {
             const MeshEdit::Bisection& halves =
                 edit.bisect(e, from, to, random.uniform(0.25, 0.75));
             const auto& last = halves.elements[random.below(halves.elements.size())];
-            for (const ElementId part : {last.kept, last.added})
+            for (const CellId part : {last.kept, last.added})
                 for (int f = 0; f < 4; ++f)
                     if (mesh.neighbor({part, f}).is_valid() && random.below(4) == 0)
                         edit.open({part, f});
@@ -293,7 +292,7 @@ ChangeSet random_edit(Mesh& mesh, Random& random) {
         for (std::size_t i = 0; i < count; ++i) {
             const FacePair pair = pairs[random.below(pairs.size())];
             if (!mesh.neighbor(pair.a).is_valid() && !mesh.neighbor(pair.b).is_valid() &&
-                pair.a.element != pair.b.element)
+                pair.a.cell != pair.b.cell)
                 edit.close(pair.a, pair.b);
         }
     }

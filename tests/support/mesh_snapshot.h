@@ -12,8 +12,8 @@ struct MeshSnapshot {
     std::uint64_t epoch;
     std::size_t num_nodes, num_elements, element_capacity;
     std::vector<Vec3> rest_positions;
-    std::vector<ElementId> anchors;
-    std::vector<std::vector<NodeId>> corners;    // of living elements
+    std::vector<CellId> anchors;
+    std::vector<std::vector<VertexId>> corners;  // of living elements
     std::vector<std::vector<FaceId>> neighbors;  // of living elements
     std::vector<std::vector<bool>> was_inside;   // of the faces of living elements
     bool operator==(const MeshSnapshot&) const = default;
@@ -25,9 +25,9 @@ struct MeshSnapshot {
           element_capacity(mesh.element_capacity()),
           rest_positions(mesh.rest_positions().begin(), mesh.rest_positions().end()) {
         for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
-            anchors.push_back(mesh.incident_element(NodeId(n)));
+            anchors.push_back(mesh.incident_element(VertexId(n)));
         for (std::size_t i = 0; i < element_capacity; ++i) {
-            const ElementId e(i);
+            const CellId e(i);
             corners.emplace_back();
             neighbors.emplace_back();
             was_inside.emplace_back();

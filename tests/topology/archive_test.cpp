@@ -14,9 +14,9 @@ struct Thing {
     bool flag = false;
     int number = 0;
     std::vector<std::string> names;
-    std::unordered_map<std::int32_t, std::vector<NodeId>> lists;
+    std::unordered_map<std::int32_t, std::vector<VertexId>> lists;
     std::unordered_set<std::int32_t> set;
-    std::pair<NodeId, int> pair;
+    std::pair<VertexId, int> pair;
     std::array<double, 2> values{};
     Eigen::AlignedBox3d box;
     static void archive(auto& ar, auto& self) {
@@ -26,9 +26,9 @@ struct Thing {
 };
 
 Thing thing() {
-    Thing t{true, -7, {"a", ""}, {}, {}, {NodeId(3), 2}, {-0.0, 5e-324}, {}};
+    Thing t{true, -7, {"a", ""}, {}, {}, {VertexId(3), 2}, {-0.0, 5e-324}, {}};
     for (int i = 20; i > 0; --i) {
-        t.lists[i * 37] = {NodeId(static_cast<std::size_t>(i)), NodeId()};
+        t.lists[i * 37] = {VertexId(static_cast<std::size_t>(i)), VertexId()};
         t.set.insert(i * i);
     }
     return t;
@@ -84,14 +84,14 @@ TEST(Archive, KeepsEdits) {
     ChangeSet changes;
     changes.epoch_after = 1;
     changes.node_capacity_after = 9;
-    changes.nodes_added.push_back({NodeId(8), Vec3(1, 2, 3), {}, 2});
-    changes.nodes_added[0].sources[1] = {NodeId(4), 0.25};
+    changes.nodes_added.push_back({VertexId(8), Vec3(1, 2, 3), {}, 2});
+    changes.nodes_added[0].sources[1] = {VertexId(4), 0.25};
     changes.elements_added.push_back(
-        {ElementId(5), CellKind::hexahedron, 7, ElementId(2), {NodeId(1), NodeId(8)}});
-    changes.elements_removed.push_back({ElementId(1), CellKind::tetrahedron, 0, {}, {NodeId(0)}});
-    changes.rewired.push_back({ElementId(2), 3, NodeId(4), NodeId(8)});
-    changes.faces_opened.push_back({{ElementId(1), 2}, {ElementId(3), 0}});
-    changes.faces_closed.push_back({{ElementId(2), 1}, {ElementId(5), 1}});
+        {CellId(5), CellKind::hexahedron, 7, CellId(2), {VertexId(1), VertexId(8)}});
+    changes.elements_removed.push_back({CellId(1), CellKind::tetrahedron, 0, {}, {VertexId(0)}});
+    changes.rewired.push_back({CellId(2), 3, VertexId(4), VertexId(8)});
+    changes.faces_opened.push_back({{CellId(1), 2}, {CellId(3), 0}});
+    changes.faces_closed.push_back({{CellId(2), 1}, {CellId(5), 1}});
     const std::string bytes = bytes_of(changes);
     ArchiveReader ar(bytes);
     EXPECT_EQ(ar.read<ChangeSet>(), changes);

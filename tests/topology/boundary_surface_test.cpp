@@ -16,7 +16,7 @@ namespace {
 
 struct Triangle {
     FaceId face;
-    std::array<NodeId, 3> nodes;
+    std::array<VertexId, 3> nodes;
     bool is_cut;
     auto operator<=>(const Triangle&) const = default;
 };
@@ -36,7 +36,7 @@ TEST(BoundarySurface, EqualsAFreshOneAfterEditsAndInverses) {
             Mesh mesh = Mesh::build(family.data).mesh;
             test::Random random(seed);
             BoundarySurface surface(mesh);
-            std::vector<std::array<NodeId, 3>> copy;  // as a renderer has it
+            std::vector<std::array<VertexId, 3>> copy;  // as a renderer has it
             const auto upload = [&] {
                 const auto changes = surface.take_changes();
                 copy.resize(surface.triangles().size());
@@ -80,10 +80,10 @@ TEST(BoundarySurface, RefusesAnEditOutOfTurn) {
     Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 1)).mesh;
     BoundarySurface surface(mesh);
     MeshEdit first(mesh);
-    first.remove(ElementId(3));
+    first.remove(CellId(3));
     first.commit();
     MeshEdit second(mesh);
-    second.remove(ElementId(5));
+    second.remove(CellId(5));
     const ChangeSet changes = second.commit();
     EXPECT_THROW(surface.apply(mesh, changes), InputError);
 }

@@ -32,17 +32,17 @@ MeshData written(const Mesh& material, const FragmentMesh& fragments) {
 test::FragmentShape shape_in_file(const Mesh& material, const FragmentMesh& fragments) {
     std::vector<std::int64_t> row(material.element_capacity(), -1);
     std::int64_t next = 0;
-    for (const ElementId cell : material.elements()) row[cell.index()] = next++;
-    return test::shape_of(fragments, [&](ElementId cell) { return row[cell.index()]; });
+    for (const CellId cell : material.elements()) row[cell.index()] = next++;
+    return test::shape_of(fragments, [&](CellId cell) { return row[cell.index()]; });
 }
 
 test::FragmentShape shape_by_label(const Mesh& material, const FragmentMesh& fragments) {
-    return test::shape_of(fragments, [&](ElementId cell) { return material.label(cell); });
+    return test::shape_of(fragments, [&](CellId cell) { return material.label(cell); });
 }
 
 std::size_t num_carried_away(const Mesh& material, const FragmentMesh& fragments) {
     std::size_t count = 0;
-    for (const ElementId cell : material.elements()) count += fragments.is_at_home(cell) ? 0 : 1;
+    for (const CellId cell : material.elements()) count += fragments.is_at_home(cell) ? 0 : 1;
     return count;
 }
 
@@ -79,7 +79,7 @@ TEST(Carriers, AreLeftOutOfABodyWithoutDivisions) {
         EXPECT_TRUE(carriers_of(material, fragments).is_empty());
         MeshEdit edit(material);
         for (const FaceId f : test::inner_faces(material))
-            if (f.element.index() % 3 == 0 && material.neighbor(f).is_valid()) edit.open(f);
+            if (f.cell.index() % 3 == 0 && material.neighbor(f).is_valid()) edit.open(f);
         fragments.apply(material, edit.commit());
         EXPECT_TRUE(carriers_of(material, fragments).is_empty());
         expect_round_trip(material, fragments);

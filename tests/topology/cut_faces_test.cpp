@@ -41,7 +41,7 @@ Mesh saved_and_restored(const Mesh& mesh) {
 /// Returns which faces are on cuts, by row of the elements in ascending order.
 std::vector<std::vector<bool>> marks(const Mesh& mesh) {
     std::vector<std::vector<bool>> marks;
-    for (const ElementId e : mesh.elements()) {
+    for (const CellId e : mesh.elements()) {
         marks.emplace_back();
         for (int f = 0; f < mesh.num_faces(e); ++f) marks.back().push_back(mesh.is_on_cut({e, f}));
     }
@@ -52,7 +52,7 @@ std::vector<std::vector<bool>> marks(const Mesh& mesh) {
 std::vector<std::vector<bool>> marks_in_file(const MeshData& data) {
     const Mesh read = Mesh::build(data).mesh;
     std::vector<std::vector<bool>> marks(data.num_cells());
-    for (const ElementId e : read.elements())
+    for (const CellId e : read.elements())
         for (int f = 0; f < read.num_faces(e); ++f)
             marks[static_cast<std::size_t>(read.label(e))].push_back(read.is_on_cut({e, f}));
     return marks;
@@ -125,7 +125,7 @@ TEST(CutFaces, StayMarkedInAMirroredBody) {
         Mesh mesh = Mesh::build(family.data).mesh;
         if (mesh.num_elements() < 3) continue;
         MeshEdit edit(mesh);
-        edit.remove(ElementId(mesh.element_capacity() / 2));
+        edit.remove(CellId(mesh.element_capacity() / 2));
         edit.commit();
         MeshData data = to_mesh_data(mesh, mesh.rest_positions());
         const auto area = [](const MeshData& of) {

@@ -12,9 +12,9 @@
 namespace incise::topology {
 namespace {
 
-Box box_of(const Mesh& mesh, ElementId e, std::span<const Vec3> positions) {
+Box box_of(const Mesh& mesh, CellId e, std::span<const Vec3> positions) {
     Box box;
-    for (const NodeId n : mesh.corners(e)) box.extend(positions[n.index()]);
+    for (const VertexId n : mesh.corners(e)) box.extend(positions[n.index()]);
     return box;
 }
 
@@ -24,12 +24,12 @@ void expect_complete(const ElementBoxes& boxes, const Mesh& mesh, std::span<cons
     for (int i = 0; i < 10; ++i) {
         const Vec3& x = positions[random.below(positions.size())];
         const Box near(x - Vec3::Constant(0.05), x + Vec3::Constant(0.05));
-        std::vector<ElementId> found;
+        std::vector<CellId> found;
         boxes.for_each_near(
             mesh, [&](const Box& box) { return box.intersects(near); },
-            [&](ElementId e) { found.push_back(e); });
+            [&](CellId e) { found.push_back(e); });
         EXPECT_TRUE(std::ranges::is_sorted(found));
-        for (const ElementId e : mesh.elements())
+        for (const CellId e : mesh.elements())
             if (box_of(mesh, e, positions).intersects(near)) {
                 EXPECT_TRUE(std::ranges::binary_search(found, e));
                 EXPECT_TRUE(boxes.may_meet(near));

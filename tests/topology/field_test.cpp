@@ -17,7 +17,7 @@
 namespace incise::topology {
 namespace {
 
-static_assert(Follower<NodeField<Vec3>> && Follower<ElementField<int>> &&
+static_assert(Follower<NodeField<VertexId, Vec3>> && Follower<ElementField<CellId, int>> &&
               Follower<BoundarySurface> && Follower<ComponentCount> && Follower<ElementBoxes>);
 
 /// A linear function of the place at rest, which means with weights reproduce.
@@ -29,14 +29,14 @@ TEST(NodeField, FollowsEditsAsTheRestPositionsDo) {
         for (std::uint64_t seed = 0; seed < 3; ++seed) {
             Mesh mesh = Mesh::build(family.data).mesh;
             test::Random random(seed);
-            NodeField<Vec3> field(mesh, Vec3(Vec3::Zero()));
-            for (const NodeId n : mesh.nodes()) field[n] = function_of(mesh.rest_position(n));
+            NodeField<VertexId, Vec3> field(mesh, Vec3(Vec3::Zero()));
+            for (const VertexId n : mesh.nodes()) field[n] = function_of(mesh.rest_position(n));
             for (int i = 0; i < test::num_cases(10) && mesh.num_elements() > 4; ++i) {
                 const std::vector<Vec3> before(field.values().begin(), field.values().end());
                 const ChangeSet changes = test::random_edit(mesh, random);
                 field.apply(mesh, changes);
                 ASSERT_EQ(field.values().size(), mesh.node_capacity());
-                for (const NodeId n : mesh.nodes())
+                for (const VertexId n : mesh.nodes())
                     ASSERT_LE((field[n] - function_of(mesh.rest_position(n))).norm(), 1e-14);
                 if (changes.is_empty() || random.below(2) > 0) continue;
                 const ChangeSet back = inverse(changes);
@@ -51,13 +51,13 @@ TEST(NodeField, FollowsEditsAsTheRestPositionsDo) {
 TEST(ElementField, GivesPartsWhatTheWholeHas) {
     Mesh mesh = Mesh::build(test::jittered_cube(3, 0.1, 1)).mesh;
     test::Random random(2);
-    ElementField<int> field(mesh, 0);
-    for (const ElementId e : mesh.elements()) field[e] = e.value;
+    ElementField<CellId, int> field(mesh, 0);
+    for (const CellId e : mesh.elements()) field[e] = e.value;
     int num_parts = 0;
     for (int i = 0; i < test::num_cases(100); ++i) {
         const ChangeSet changes = test::random_edit(mesh, random);
         field.apply(mesh, changes);
-        for (const ElementRecord& record : changes.elements_added)
+        for (const CellRecord& record : changes.elements_added)
             if (record.parent.is_valid() && mesh.is_alive(record.id)) {
                 EXPECT_EQ(field[record.id], field[record.parent]);
                 ++num_parts;
@@ -69,7 +69,7 @@ TEST(ElementField, GivesPartsWhatTheWholeHas) {
 
 TEST(Fields, FollowSeveralEditsAfterTheLast) {
     Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 1)).mesh;
-    NodeField<Vec3> at_once(mesh, mesh.rest_positions()), one_by_one = at_once;
+    NodeField<VertexId, Vec3> at_once(mesh, mesh.rest_positions()), one_by_one = at_once;
     test::Random random(5);
     std::vector<ChangeSet> edits;
     for (int i = 0; i < 10; ++i) {
@@ -82,16 +82,16 @@ TEST(Fields, FollowSeveralEditsAfterTheLast) {
 
 TEST(Followers, RefuseEditsOutOfTurn) {
     Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 1)).mesh;
-    NodeField<double> nodes(mesh, 1.0);
-    ElementField<double> elements(mesh, 1.0);
+    NodeField<VertexId, double> nodes(mesh, 1.0);
+    ElementField<CellId, double> elements(mesh, 1.0);
     ComponentCount components(mesh);
     BoundarySurface surface(mesh);
     ElementBoxes boxes(mesh, mesh.rest_positions());
     MeshEdit first(mesh);
-    first.remove(ElementId(3));
+    first.remove(CellId(3));
     first.commit();
     MeshEdit second(mesh);
-    second.remove(ElementId(5));
+    second.remove(CellId(5));
     const ChangeSet changes = second.commit();
     EXPECT_THROW(nodes.apply(mesh, changes), InputError);
     EXPECT_THROW(elements.apply(mesh, changes), InputError);

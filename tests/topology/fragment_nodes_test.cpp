@@ -19,30 +19,30 @@
 namespace incise::topology {
 namespace {
 
-std::vector<ElementId> living_cells(const Mesh& material) {
-    std::vector<ElementId> cells;
-    for (const ElementId e : material.elements()) cells.push_back(e);
+std::vector<CellId> living_cells(const Mesh& material) {
+    std::vector<CellId> cells;
+    for (const CellId e : material.elements()) cells.push_back(e);
     return cells;
 }
 
-Vec3 centre(const Mesh& material, ElementId cell) {
+Vec3 centre(const Mesh& material, CellId cell) {
     Vec3 sum = Vec3::Zero();
-    for (const NodeId n : material.corners(cell)) sum += material.rest_position(n);
+    for (const VertexId n : material.corners(cell)) sum += material.rest_position(n);
     return sum / 4.0;
 }
 
 /// Removes some cells side by side.
 ChangeSet remove_some(Mesh& material, test::Random& random) {
     const auto cells = living_cells(material);
-    std::vector<ElementId> pending{cells[random.below(cells.size())]};
+    std::vector<CellId> pending{cells[random.below(cells.size())]};
     MeshEdit edit(material);
     for (int i = 0; i < 6 && !pending.empty(); ++i) {
-        const ElementId e = pending.back();
+        const CellId e = pending.back();
         pending.pop_back();
         if (!material.is_alive(e) || material.num_elements() < 3) continue;
         for (int f = 0; f < material.num_faces(e); ++f)
             if (material.neighbor({e, f}).is_valid())
-                pending.push_back(material.neighbor({e, f}).element);
+                pending.push_back(material.neighbor({e, f}).cell);
         edit.remove(e);
     }
     return edit.commit();
@@ -55,12 +55,10 @@ ChangeSet open_some(Mesh& material, test::Random& random) {
                normal = random.vector(1.0);
     const double size = random.uniform();
     const bool is_near = random.below(2) == 0;
-    const auto is_ahead = [&](ElementId e) {
-        return (centre(material, e) - point).dot(normal) > 0.0;
-    };
+    const auto is_ahead = [&](CellId e) { return (centre(material, e) - point).dot(normal) > 0.0; };
     MeshEdit edit(material);
     for (const FaceId f : test::inner_faces(material)) {
-        if (is_ahead(f.element) == is_ahead(material.neighbor(f).element)) continue;
+        if (is_ahead(f.cell) == is_ahead(material.neighbor(f).cell)) continue;
         const Vec3& x = material.rest_position(material.face_corner(f, 0));
         if (is_near ? (x - point).norm() < size : random.uniform() < 0.3 * size) edit.open(f);
     }
@@ -146,22 +144,22 @@ void append(ChangeSet& all, const ChangeSet& next) {
 
 /// Drops the cells that were added and removed again. What they came from takes their place.
 void drop_passing(ChangeSet& all) {
-    std::map<ElementId, ElementId> parents;
-    for (const ElementRecord& record : all.elements_added) parents[record.id] = record.parent;
-    std::map<ElementId, ElementId> passing;
-    for (const ElementRecord& record : all.elements_removed)
+    std::map<CellId, CellId> parents;
+    for (const CellRecord& record : all.elements_added) parents[record.id] = record.parent;
+    std::map<CellId, CellId> passing;
+    for (const CellRecord& record : all.elements_removed)
         if (parents.contains(record.id)) passing[record.id] = parents.at(record.id);
-    const auto is_passing = [&](const ElementRecord& r) { return passing.contains(r.id); };
+    const auto is_passing = [&](const CellRecord& r) { return passing.contains(r.id); };
     std::erase_if(all.elements_added, is_passing);
     std::erase_if(all.elements_removed, is_passing);
-    const auto replace = [&](ElementId& cell) {
+    const auto replace = [&](CellId& cell) {
         while (passing.contains(cell)) cell = passing.at(cell);
     };
-    for (ElementRecord& record : all.elements_added) replace(record.parent);
+    for (CellRecord& record : all.elements_added) replace(record.parent);
     for (auto* pairs : {&all.faces_opened, &all.faces_closed})
         for (FacePair& pair : *pairs) {
-            replace(pair.a.element);
-            replace(pair.b.element);
+            replace(pair.a.cell);
+            replace(pair.b.cell);
         }
 }
 
@@ -221,12 +219,12 @@ TEST(FragmentNodes, LetNoMaterialJump) {
                     x[record.id.index()] +=
                         record.sources[k].weight * x[record.sources[k].node.index()];
             }
-            std::map<ElementId, ElementId> ancestors;
-            for (const ElementRecord& record : changes.elements_added) {
+            std::map<CellId, CellId> ancestors;
+            for (const CellRecord& record : changes.elements_added) {
                 const auto known = ancestors.find(record.parent);
                 ancestors[record.id] = known == ancestors.end() ? record.parent : known->second;
             }
-            for (const ElementId cell : material.elements()) {
+            for (const CellId cell : material.elements()) {
                 const auto record =
                     std::ranges::lower_bound(done.cells, cell, {}, &CarriedCell::cell);
                 if (record != done.cells.end() && record->cell == cell &&
@@ -238,7 +236,7 @@ TEST(FragmentNodes, LetNoMaterialJump) {
                 EXPECT_EQ(corners_of(before, from), corners_of(now, now.fragment_of_cell(cell)))
                     << "element " << cell.value;
             }
-            for (const ElementId cell : material.elements())
+            for (const CellId cell : material.elements())
                 num_around += now.is_carried_around(cell) ? 1 : 0;
         });
     }

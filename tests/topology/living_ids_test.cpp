@@ -12,7 +12,7 @@
 namespace incise::topology {
 namespace {
 
-static_assert(std::forward_iterator<LivingIds<NodeId, Mesh>::Iterator>);
+static_assert(std::forward_iterator<LivingIds<VertexId, Mesh>::Iterator>);
 
 template <class Id>
 void expect_living(const Mesh& mesh, LivingIds<Id, Mesh> found, std::size_t capacity,
@@ -40,7 +40,7 @@ TEST(LivingIds, AreThoseAliveAfterRemovals) {
                 MeshEdit edit(mesh);
                 std::size_t num_removed = 0;
                 const auto living = mesh.elements();
-                for (const ElementId e : std::vector<ElementId>(living.begin(), living.end()))
+                for (const CellId e : std::vector<CellId>(living.begin(), living.end()))
                     if (random.below(3) == 0) {
                         edit.remove(e);
                         ++num_removed;
@@ -55,11 +55,11 @@ TEST(LivingIds, AreThoseAliveAfterRemovals) {
 }
 
 TEST(Ids, AreKeysOfSets) {
-    std::unordered_set<ElementId> elements;
-    for (std::size_t i = 0; i < 100; ++i) EXPECT_TRUE(elements.insert(ElementId(i)).second);
-    EXPECT_FALSE(elements.insert(ElementId(7)).second);
-    EXPECT_TRUE(elements.contains(ElementId(99)));
-    EXPECT_FALSE(elements.contains(ElementId(100)));
+    std::unordered_set<CellId> elements;
+    for (std::size_t i = 0; i < 100; ++i) EXPECT_TRUE(elements.insert(CellId(i)).second);
+    EXPECT_FALSE(elements.insert(CellId(7)).second);
+    EXPECT_TRUE(elements.contains(CellId(99)));
+    EXPECT_FALSE(elements.contains(CellId(100)));
 }
 
 }  // namespace

@@ -47,9 +47,9 @@ TEST(MeshEdit, WithoutCommitLeavesNoTrace) {
         const MeshSnapshot before(mesh);
         {
             MeshEdit edit(mesh);
-            for (int f = 0; f < mesh.num_faces(ElementId(0)); ++f)
-                if (mesh.neighbor({ElementId(0), f}).is_valid()) edit.open({ElementId(0), f});
-            edit.remove(ElementId(0));
+            for (int f = 0; f < mesh.num_faces(CellId(0)); ++f)
+                if (mesh.neighbor({CellId(0), f}).is_valid()) edit.open({CellId(0), f});
+            edit.remove(CellId(0));
         }
         EXPECT_EQ(MeshSnapshot(mesh), before);
         EXPECT_EQ(validate(mesh), no_violations);
@@ -69,7 +69,7 @@ TEST(MeshEdit, WithoutCommitGivesMergedNodesBack) {
             const FacePair pair = test::open_pairs(mesh).front();
             MeshEdit edit(mesh);
             edit.close(pair.a, pair.b);
-            edit.remove(ElementId(removed));
+            edit.remove(CellId(removed));
         }
         EXPECT_EQ(MeshSnapshot(mesh), before);
         EXPECT_EQ(validate(mesh), no_violations);
@@ -83,8 +83,8 @@ TEST(MeshEdit, OpeningAPlaneCopiesItsNodesOnce) {
             Mesh mesh = Mesh::build(box_mesh(kind, {0, 0, 0}, {n, n, n}, {n, n, n})).mesh;
             MeshEdit edit(mesh);
             for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-                for (int f = 0; f < mesh.num_faces(ElementId(i)); ++f) {
-                    const FaceId face{ElementId(i), f};
+                for (int f = 0; f < mesh.num_faces(CellId(i)); ++f) {
+                    const FaceId face{CellId(i), f};
                     bool is_chosen = mesh.neighbor(face).is_valid();
                     for (int p = 0; p < mesh.face_size(face); ++p) {
                         const Vec3& x = mesh.rest_position(mesh.face_corner(face, p));
@@ -97,7 +97,7 @@ TEST(MeshEdit, OpeningAPlaneCopiesItsNodesOnce) {
             EXPECT_EQ(changes.nodes_added.size(),
                       static_cast<std::size_t>(is_full ? (n + 1) * (n + 1) : n / 2 * (n + 1)));
             EXPECT_EQ(components(mesh).count, is_full ? 2 : 1);
-            for (const NodeRecord& record : changes.nodes_added) {
+            for (const VertexRecord& record : changes.nodes_added) {
                 ASSERT_EQ(record.num_sources, 1);
                 EXPECT_EQ(record.sources[0].weight, 1.0);
                 EXPECT_EQ(record.rest_position, mesh.rest_position(record.sources[0].node));
@@ -109,7 +109,7 @@ TEST(MeshEdit, OpeningOneFaceCopiesNoNode) {
     Mesh mesh = Mesh::build(test::jittered_cube(3, 0.1, 1)).mesh;
     for (std::size_t i = 0; i < mesh.num_elements(); ++i)
         for (int f = 0; f < 4; ++f) {
-            const FaceId face{ElementId(i), f};
+            const FaceId face{CellId(i), f};
             if (!mesh.neighbor(face).is_valid()) continue;
             bool is_inside = true;
             for (int p = 0; p < 3; ++p) {
@@ -135,8 +135,8 @@ TEST(MeshEdit, RemovingAHingeAddsANode) {
     Mesh mesh = Mesh::build(data).mesh;
     const auto middle = [&] {
         for (std::size_t i = 0; i < 3; ++i)
-            if (mesh.label(ElementId(i)) == 1) return ElementId(i);
-        return ElementId();
+            if (mesh.label(CellId(i)) == 1) return CellId(i);
+        return CellId();
     }();
     MeshEdit edit(mesh);
     edit.remove(middle);
@@ -155,7 +155,7 @@ TEST(MeshEdit, ClosingWhatWasOpenedRestoresTheNodes) {
         MeshEdit edit(mesh);
         for (std::size_t i = 0; i < mesh.num_elements(); ++i)
             for (int f = 0; f < 4; ++f)
-                if (mesh.neighbor({ElementId(i), f}).is_valid()) edit.open({ElementId(i), f});
+                if (mesh.neighbor({CellId(i), f}).is_valid()) edit.open({CellId(i), f});
         opened = edit.commit();
     }
     EXPECT_EQ(mesh.num_nodes(), 4 * mesh.num_elements());
@@ -164,7 +164,7 @@ TEST(MeshEdit, ClosingWhatWasOpenedRestoresTheNodes) {
     const ChangeSet closed = edit.commit();
     EXPECT_EQ(mesh.num_nodes(), num_nodes);
     EXPECT_EQ(validate(mesh), no_violations);
-    for (const NodeRecord& record : closed.nodes_removed) {
+    for (const VertexRecord& record : closed.nodes_removed) {
         ASSERT_EQ(record.num_sources, 1);
         EXPECT_TRUE(mesh.is_alive(record.sources[0].node));
         EXPECT_LT(record.sources[0].node, record.id);
@@ -174,14 +174,14 @@ TEST(MeshEdit, ClosingWhatWasOpenedRestoresTheNodes) {
 TEST(MeshEdit, RefusesWhatCannotBeDone) {
     Mesh mesh = Mesh::build(test::mesh_families()[1].data).mesh;
     MeshEdit edit(mesh);
-    EXPECT_THROW(edit.remove(ElementId(7)), InputError);
-    EXPECT_THROW(edit.remove(ElementId()), InputError);
+    EXPECT_THROW(edit.remove(CellId(7)), InputError);
+    EXPECT_THROW(edit.remove(CellId()), InputError);
     const auto outer = boundary_faces(mesh);
     EXPECT_THROW(edit.open(outer[0]), InputError);
     EXPECT_THROW(edit.close(outer[0], outer[4]), InputError);
     EXPECT_THROW(edit.close(outer[0], outer[0]), InputError);
-    edit.remove(ElementId(0));
-    EXPECT_THROW(edit.remove(ElementId(0)), InputError);
+    edit.remove(CellId(0));
+    EXPECT_THROW(edit.remove(CellId(0)), InputError);
 }
 
 TEST(MeshEdit, RefusesToDivideOrJoinWhatCannotBe) {
@@ -201,8 +201,8 @@ TEST(MeshEdit, RefusesToDivideOrJoinWhatCannotBe) {
     };
     {
         MeshEdit edit(mesh);
-        const ElementId e(0);
-        const NodeId a = mesh.corners(e)[0], b = mesh.corners(e)[1];
+        const CellId e(0);
+        const VertexId a = mesh.corners(e)[0], b = mesh.corners(e)[1];
         const std::string edge = "edit: the edge between nodes " + std::to_string(a.value) +
                                  " and " + std::to_string(b.value) +
                                  " of element 0 cannot be divided: ";
@@ -210,16 +210,16 @@ TEST(MeshEdit, RefusesToDivideOrJoinWhatCannotBe) {
             EXPECT_EQ(message_of([&] { edit.bisect(e, a, b, t); }),
                       edge + "the place " + std::to_string(t) + " is not between 0 and 1");
         expect_end([&] { edit.bisect(e, a, a, 0.5); }, "the element has no such edge");
-        const ElementId part = edit.bisect(e, a, b, 0.5).elements.front().added;
+        const CellId part = edit.bisect(e, a, b, 0.5).elements.front().added;
         EXPECT_EQ(message_of([&] { edit.remove(part); }),
                   "edit: element " + std::to_string(part.value) +
                       " was made in this edit and cannot be removed in it: commit first");
         FaceId inner;
         for (int f = 0; f < 4; ++f)
-            if (mesh.neighbor({ElementId(1), f}).is_valid()) inner = {ElementId(1), f};
+            if (mesh.neighbor({CellId(1), f}).is_valid()) inner = {CellId(1), f};
         FaceId outer = boundary_faces(mesh).back();
         for (const FaceId f : boundary_faces(mesh))
-            if (f.element == ElementId(2)) outer = f;
+            if (f.cell == CellId(2)) outer = f;
         expect_end([&] { edit.close(inner, outer); }, "one of them is joined already");
     }
     EXPECT_EQ(MeshSnapshot(mesh), before);  // given up, it leaves no trace
@@ -228,7 +228,7 @@ TEST(MeshEdit, RefusesToDivideOrJoinWhatCannotBe) {
 TEST(MeshEdit, ReplayRefusesAnEditOutOfTurn) {
     Mesh mesh = Mesh::build(test::mesh_families()[3].data).mesh;
     MeshEdit edit(mesh);
-    edit.remove(ElementId(0));
+    edit.remove(CellId(0));
     const ChangeSet changes = edit.commit();
     EXPECT_THROW(replay(mesh, changes), InputError);
     replay(mesh, inverse(changes));

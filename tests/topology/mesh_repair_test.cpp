@@ -220,7 +220,7 @@ TEST(Weld, LetsEveryLabelFindItsNode) {
         for (std::size_t p = 0; p < soup.points.size(); ++p) {
             const auto nodes = mesh.nodes_with_label(static_cast<std::int64_t>(p));
             ASSERT_FALSE(nodes.empty());
-            for (const NodeId n : nodes) {
+            for (const VertexId n : nodes) {
                 EXPECT_TRUE(mesh.is_alive(n));
                 EXPECT_EQ(mesh.rest_position(n), soup.points[p]);
             }

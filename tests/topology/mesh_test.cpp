@@ -102,7 +102,7 @@ TEST(Mesh, ConnectivityIsThatOfEachElement) {
             ASSERT_EQ(all.epoch, mesh.epoch());
             ASSERT_EQ(all.kinds.size(), mesh.element_capacity());
             for (std::size_t k = 0; k < all.kinds.size(); ++k) {
-                const ElementId e(k);
+                const CellId e(k);
                 ASSERT_EQ(all.is_alive[k] != 0, mesh.is_alive(e));
                 ASSERT_EQ(all.kinds[k], mesh.kind(e));
                 ASSERT_EQ(all.regions[k], mesh.region(e));
@@ -126,11 +126,11 @@ TEST(Mesh, LabelsAreTheNumbersOfTheSource) {
         const BuiltMesh built = Mesh::build(family.data);
         const Mesh& mesh = built.mesh;
         for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-            const ElementId e(i);
+            const CellId e(i);
             const auto cell = family.data.cell(static_cast<std::size_t>(mesh.label(e)));
             ASSERT_EQ(mesh.region(e), family.data.regions[static_cast<std::size_t>(mesh.label(e))]);
             for (std::size_t k = 0; k < cell.size(); ++k) {
-                const NodeId n = mesh.corners(e)[k];
+                const VertexId n = mesh.corners(e)[k];
                 const auto named = mesh.nodes_with_label(cell[k]);
                 ASSERT_NE(std::find(named.begin(), named.end(), n), named.end());
                 ASSERT_EQ(mesh.rest_position(n),
@@ -148,10 +148,10 @@ TEST(Mesh, NumbersNeighboursNearEachOther) {
     std::size_t near = 0, all = 0;
     for (std::size_t i = 0; i < built.mesh.num_elements(); ++i)
         for (int f = 0; f < 4; ++f) {
-            const FaceId other = built.mesh.neighbor({ElementId(i), f});
+            const FaceId other = built.mesh.neighbor({CellId(i), f});
             if (!other.is_valid()) continue;
             ++all;
-            near += std::max(i, other.element.index()) - std::min(i, other.element.index()) < 64;
+            near += std::max(i, other.cell.index()) - std::min(i, other.cell.index()) < 64;
         }
     EXPECT_GT(near, all * 7 / 10);
 }
@@ -198,22 +198,22 @@ TEST(Mesh, LeavesUnusedPointsOut) {
     EXPECT_EQ(validate(built.mesh), std::vector<std::string>());
     ASSERT_EQ(built.warnings.size(), 1u);
     EXPECT_EQ(built.warnings[0], "point 1 belongs to no cell and is left out");
-    for (const NodeId n : built.mesh.nodes_with_label(1)) EXPECT_FALSE(built.mesh.is_alive(n));
+    for (const VertexId n : built.mesh.nodes_with_label(1)) EXPECT_FALSE(built.mesh.is_alive(n));
 }
 
 TEST(Mesh, StarsHoldExactlyTheElementsOfANode) {
     for (const auto& family : test::mesh_families()) {
         SCOPED_TRACE(family.name);
         const BuiltMesh built = Mesh::build(family.data);
-        std::vector<ElementId> star;
+        std::vector<CellId> star;
         for (std::size_t n = 0; n < built.mesh.node_capacity(); ++n) {
-            std::vector<ElementId> expected;
+            std::vector<CellId> expected;
             for (std::size_t i = 0; i < built.mesh.element_capacity(); ++i) {
-                const auto corners = built.mesh.corners(ElementId(i));
-                if (std::find(corners.begin(), corners.end(), NodeId(n)) != corners.end())
+                const auto corners = built.mesh.corners(CellId(i));
+                if (std::find(corners.begin(), corners.end(), VertexId(n)) != corners.end())
                     expected.emplace_back(i);
             }
-            built.mesh.star(NodeId(n), star);
+            built.mesh.star(VertexId(n), star);
             ASSERT_EQ(star, expected);
         }
     }

@@ -30,7 +30,7 @@ class Oracle {
   public:
     explicit Oracle(const Mesh& mesh) : mesh_(mesh) {
         for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
-            const ElementId e(i);
+            const CellId e(i);
             std::array<Complex::Point, max_corners> p;
             for (std::size_t k = 0; k < mesh.corners(e).size(); ++k) {
                 const Vec3& x = mesh.rest_position(mesh.corners(e)[k]);
@@ -45,7 +45,7 @@ class Oracle {
         complex_.sew3_same_facets();
     }
 
-    void remove(ElementId e) { complex_.remove_cell<3>(cells_[e.index()]); }
+    void remove(CellId e) { complex_.remove_cell<3>(cells_[e.index()]); }
 
     // Finds the face of e's cell whose corners are at the given points.
     void open(FaceId f) {
@@ -55,7 +55,7 @@ class Oracle {
             wanted.insert({x.x(), x.y(), x.z()});
         }
         Complex::Dart_handle found = nullptr;
-        auto darts = complex_.darts_of_cell<3>(cells_[f.element.index()]);
+        auto darts = complex_.darts_of_cell<3>(cells_[f.cell.index()]);
         for (auto it = darts.begin(); it.cont(); ++it) {
             std::set<Complex::Point> points;
             Complex::Dart_handle d = it;
@@ -92,7 +92,7 @@ TEST(Surgery, CountsAsCgalsManagedOperationsDo) {
             ASSERT_EQ(mesh.map().num_darts(), oracle.complex().number_of_darts());
             const std::size_t rounds = std::min<std::size_t>(mesh.num_elements(), 60);
             for (std::size_t i = 0; i < rounds; ++i) {
-                const ElementId e(random.below(mesh.element_capacity()));
+                const CellId e(random.below(mesh.element_capacity()));
                 if (!mesh.is_alive(e)) continue;
                 const FaceId f{
                     e, static_cast<int>(random.below(static_cast<std::size_t>(mesh.num_faces(e))))};

@@ -29,18 +29,18 @@ ChangeSet edit_of(const Mesh& mesh) {
     return changes;
 }
 
-NodeId node_at(const Mesh& mesh, const Vec3& X) {
+VertexId node_at(const Mesh& mesh, const Vec3& X) {
     for (std::size_t i = 0; i < mesh.node_capacity(); ++i)
-        if (mesh.rest_position(NodeId(i)) == X) return NodeId(i);
+        if (mesh.rest_position(VertexId(i)) == X) return VertexId(i);
     throw std::logic_error("no such node");
 }
 
 /// The element with a corner at a place that only it has.
-ElementId element_at(const Mesh& mesh, const Vec3& X) {
+CellId element_at(const Mesh& mesh, const Vec3& X) {
     return mesh.incident_element(node_at(mesh, X));
 }
 
-Rewiring rewiring(const Mesh& mesh, ElementId e, NodeId from, NodeId to) {
+CellRewiring rewiring(const Mesh& mesh, CellId e, VertexId from, VertexId to) {
     return {e, mesh.corner_of(e, from), from, to};
 }
 
@@ -56,7 +56,7 @@ TEST(Validate, FindsNothingInASoundMesh) {
 
 TEST(Validate, FindsANodeThatAnElementHasTwice) {
     Mesh mesh = three_tetrahedra();
-    const ElementId e = element_at(mesh, {6, 0, 0});
+    const CellId e = element_at(mesh, {6, 0, 0});
     ChangeSet changes = edit_of(mesh);
     changes.rewired = {rewiring(mesh, e, node_at(mesh, {6, 0, 0}), node_at(mesh, {5, 1, 0}))};
     replay(mesh, changes);
@@ -66,7 +66,7 @@ TEST(Validate, FindsANodeThatAnElementHasTwice) {
 
 TEST(Validate, FindsNeighboursWithOtherCornersOnTheirFace) {
     Mesh mesh = three_tetrahedra();
-    const ElementId e = element_at(mesh, {0, 0, 1});
+    const CellId e = element_at(mesh, {0, 0, 1});
     ChangeSet changes = edit_of(mesh);
     changes.rewired = {rewiring(mesh, e, node_at(mesh, {1, 0, 0}), node_at(mesh, {6, 0, 0}))};
     replay(mesh, changes);
@@ -75,8 +75,8 @@ TEST(Validate, FindsNeighboursWithOtherCornersOnTheirFace) {
 
 TEST(Validate, FindsANodeOfDisconnectedElements) {
     Mesh mesh = three_tetrahedra();
-    const ElementId e = element_at(mesh, {6, 0, 0});
-    const NodeId shared = node_at(mesh, {1, 0, 0});
+    const CellId e = element_at(mesh, {6, 0, 0});
+    const VertexId shared = node_at(mesh, {1, 0, 0});
     ChangeSet changes = edit_of(mesh);
     changes.rewired = {rewiring(mesh, e, node_at(mesh, {6, 0, 0}), shared)};
     replay(mesh, changes);
@@ -86,7 +86,7 @@ TEST(Validate, FindsANodeOfDisconnectedElements) {
 
 TEST(Validate, FindsADeadNodeThatAnElementHas) {
     Mesh mesh = three_tetrahedra();
-    const NodeId n = node_at(mesh, {6, 0, 0});
+    const VertexId n = node_at(mesh, {6, 0, 0});
     const std::string number = std::to_string(n.value);
     ChangeSet changes = edit_of(mesh);
     changes.nodes_removed = {{n, {6, 0, 0}, {}, 0}};
@@ -98,7 +98,7 @@ TEST(Validate, FindsADeadNodeThatAnElementHas) {
 
 TEST(Validate, FindsPositionsThatTheMapDoesNotKnow) {
     Mesh mesh = three_tetrahedra();
-    const NodeId n = node_at(mesh, {6, 0, 0});
+    const VertexId n = node_at(mesh, {6, 0, 0});
     ChangeSet changes = edit_of(mesh);
     changes.nodes_added = {{n, {4, 0, 0}, {}, 0}};  // there already
     replay(mesh, changes);

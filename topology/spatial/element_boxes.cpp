@@ -31,8 +31,8 @@ void ElementBoxes::update_group(const Mesh& mesh, std::span<const Vec3> position
     Box box;
     const std::size_t end = std::min(mesh.element_capacity(), (g + 1) * group_size);
     for (std::size_t i = g * group_size; i < end; ++i)
-        if (const ElementId e(i); mesh.is_alive(e))
-            for (const NodeId n : mesh.corners(e)) box.extend(positions[n.index()]);
+        if (const CellId e(i); mesh.is_alive(e))
+            for (const VertexId n : mesh.corners(e)) box.extend(positions[n.index()]);
     groups_[g] = box;
     // The box of a supergroup only grows until the next rebuild, even if a group has lost elements.
     supergroups_[g / supergroup_size].extend(box);

@@ -91,7 +91,7 @@ void ElementBoxes::for_each_near(const topology::Mesh& mesh, MayMeet may_meet, V
             if (groups_[g].isEmpty() || !may_meet(grown(groups_[g]))) continue;
             const std::size_t end = std::min(mesh.element_capacity(), (g + 1) * group_size);
             for (std::size_t i = g * group_size; i < end; ++i)
-                if (const ElementId e(i); mesh.is_alive(e)) visit(e);
+                if (const CellId e(i); mesh.is_alive(e)) visit(e);
         }
     }
 }

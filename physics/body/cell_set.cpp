@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/body/element_set.h"
+#include "incise/physics/body/cell_set.h"
 
 #include <algorithm>
 #include <map>
@@ -8,10 +8,10 @@
 
 namespace incise::physics {
 
+using topology::CellRecord;
 using topology::ChangeSet;
-using topology::ElementRecord;
 using topology::Mesh;
-using topology::NodeRecord;
+using topology::VertexRecord;
 
 namespace {
 
@@ -29,15 +29,15 @@ const Record* find_record(const std::vector<Record>& records, Id id) {
 }
 
 /// Returns the parts that an edit has added, by the element that existed before the edit.
-std::map<ElementId, std::vector<ElementId>> parts_by_ancestor(const ChangeSet& changes) {
-    std::map<ElementId, std::vector<ElementId>> parts;
-    std::map<ElementId, ElementId> ancestors;  // of the parts
-    for (const ElementRecord& record : changes.elements_added) {
+std::map<CellId, std::vector<CellId>> parts_by_ancestor(const ChangeSet& changes) {
+    std::map<CellId, std::vector<CellId>> parts;
+    std::map<CellId, CellId> ancestors;  // of the parts
+    for (const CellRecord& record : changes.elements_added) {
         if (record.id.index() < changes.element_capacity_before || !record.parent.is_valid())
             continue;
         // The parent may itself be such a part; it then has a lower id.
         const auto known = ancestors.find(record.parent);
-        const ElementId ancestor = known == ancestors.end() ? record.parent : known->second;
+        const CellId ancestor = known == ancestors.end() ? record.parent : known->second;
         ancestors[record.id] = ancestor;
         parts[ancestor].push_back(record.id);
     }
@@ -49,27 +49,27 @@ std::map<ElementId, std::vector<ElementId>> parts_by_ancestor(const ChangeSet& c
 /// merged their nodes.
 class Ancestor {
   public:
-    Ancestor(const Mesh& mesh, const ChangeSet& changes, ElementId e)
+    Ancestor(const Mesh& mesh, const ChangeSet& changes, CellId e)
         : mesh_(mesh), changes_(changes) {
         const auto now = mesh.corners(e);
-        std::vector<NodeId> corners(now.begin(), now.end());
+        std::vector<VertexId> corners(now.begin(), now.end());
         auto rewiring = std::lower_bound(
             changes.rewired.begin(), changes.rewired.end(), e,
-            [](const topology::Rewiring& r, ElementId id) { return r.element < id; });
+            [](const topology::CellRewiring& r, CellId id) { return r.element < id; });
         for (; rewiring != changes.rewired.end() && rewiring->element == e; ++rewiring)
             corners[static_cast<std::size_t>(rewiring->corner)] = rewiring->from;
         if (const auto* removed = find_record(changes.elements_removed, e))
             corners = removed->corners;
-        for (const NodeId n : corners) rest_positions_.push_back(mesh.rest_position(n));
+        for (const VertexId n : corners) rest_positions_.push_back(mesh.rest_position(n));
     }
 
     /// True if a face of a part lies in the face of the ancestor with the same number. It cannot
     /// lie in another face, since parts keep the local numbers of corners.
     bool has_in_face(FaceId part) {
         unsigned face = 0, corners = 0;
-        for (const int k : traits(mesh_.kind(part.element)).face(part.face)) {
+        for (const int k : traits(mesh_.kind(part.cell)).face(part.face)) {
             face |= 1u << k;
-            corners |= surrounding(mesh_.corners(part.element)[static_cast<std::size_t>(k)]);
+            corners |= surrounding(mesh_.corners(part.cell)[static_cast<std::size_t>(k)]);
         }
         return (corners & ~face) == 0;
     }
@@ -77,12 +77,12 @@ class Ancestor {
   private:
     // Returns the corners of the ancestor between which the node lies, as bits. All bits are set
     // if the node does not come from the corners.
-    unsigned surrounding(NodeId n) {
+    unsigned surrounding(VertexId n) {
         const auto corner =
             std::find(rest_positions_.begin(), rest_positions_.end(), mesh_.rest_position(n));
         if (corner != rest_positions_.end()) return 1u << (corner - rest_positions_.begin());
         const auto [it, is_new] = known_.try_emplace(n, ~0u);
-        const NodeRecord* record = find_record(changes_.nodes_added, n);
+        const VertexRecord* record = find_record(changes_.nodes_added, n);
         if (!is_new || !record) return it->second;
         unsigned corners = 0;
         for (int s = 0; s < record->num_sources; ++s)
@@ -93,19 +93,19 @@ class Ancestor {
     const Mesh& mesh_;
     const ChangeSet& changes_;
     std::vector<Vec3> rest_positions_;  // of the corners
-    std::map<NodeId, unsigned> known_;
+    std::map<VertexId, unsigned> known_;
 };
 
 }  // namespace
 
-ElementSet::ElementSet(std::vector<ElementId> elements) : members_(std::move(elements)) {
+CellSet::CellSet(std::vector<CellId> elements) : members_(std::move(elements)) {
     sort_and_make_unique(members_);
 }
 
-void ElementSet::apply(const Mesh&, const ChangeSet& changes) {
+void CellSet::apply(const Mesh&, const ChangeSet& changes) {
     while (!members_.empty() && members_.back().index() >= changes.element_capacity_after)
         members_.pop_back();
-    for (const ElementRecord& record : changes.elements_added)
+    for (const CellRecord& record : changes.elements_added)
         // New ids are above all others, so that the list stays sorted. An element that an undo
         // brings back is still in the list if it was a member.
         if (record.id.index() >= changes.element_capacity_before &&
@@ -121,22 +121,22 @@ FaceSet::FaceSet(std::vector<FaceId> faces) {
 void FaceSet::apply(const Mesh& mesh, const ChangeSet& changes) {
     if (changes.element_capacity_after < changes.element_capacity_before) {
         // The edit is an undo: the parts are removed, and their faces return to the members.
-        const ElementId end(changes.element_capacity_after);
-        while (!members_.empty() && members_.back().face.element >= end) members_.pop_back();
+        const CellId end(changes.element_capacity_after);
+        while (!members_.empty() && members_.back().face.cell >= end) members_.pop_back();
         for (Member& member : members_)
             if (member.left_to >= end) member.left_to = {};
         return;
     }
     std::vector<FaceId> born;
     for (const auto& [e, parts] : parts_by_ancestor(changes)) {
-        auto member = std::lower_bound(
-            members_.begin(), members_.end(), e,
-            [](const Member& m, ElementId element) { return m.face.element < element; });
-        if (member == members_.end() || member->face.element != e) continue;
+        auto member =
+            std::lower_bound(members_.begin(), members_.end(), e,
+                             [](const Member& m, CellId element) { return m.face.cell < element; });
+        if (member == members_.end() || member->face.cell != e) continue;
         Ancestor ancestor(mesh, changes, e);
-        for (; member != members_.end() && member->face.element == e; ++member) {
+        for (; member != members_.end() && member->face.cell == e; ++member) {
             if (member->left_to.is_valid()) continue;
-            for (const ElementId part : parts)
+            for (const CellId part : parts)
                 if (const FaceId f{part, member->face.face}; ancestor.has_in_face(f))
                     born.push_back(f);
             if (!ancestor.has_in_face(member->face)) member->left_to = parts.front();
@@ -148,14 +148,14 @@ void FaceSet::apply(const Mesh& mesh, const ChangeSet& changes) {
 }
 
 // Members may have ids above those of the mesh; their users skip them.
-void ElementSet::require_fit() const {
-    if (!std::ranges::all_of(members_, &ElementId::is_valid) || !std::ranges::is_sorted(members_))
+void CellSet::require_fit() const {
+    if (!std::ranges::all_of(members_, &CellId::is_valid) || !std::ranges::is_sorted(members_))
         throw InputError("a selection has elements that cannot be");
 }
 
 void FaceSet::require_fit(const Mesh& mesh) const {
     for (const Member& m : members_) {
-        const ElementId e = m.face.element;
+        const CellId e = m.face.cell;
         const bool can_be =
             e.is_valid() && m.face.face >= 0 &&
             (e.index() >= mesh.element_capacity() || m.face.face < mesh.num_faces(e));

@@ -13,24 +13,24 @@ namespace incise::physics {
 /// A set of nodes. A new node becomes a member if all its sources are members: so a copy of a
 /// member, and a node between members. Dead members stay in the set, so that an edit can be undone:
 /// Mesh::is_alive tells which members are alive.
-class NodeSet {
+class VertexSet {
   public:
     struct Member {
-        NodeId node;
+        VertexId node;
         /// The node of the first selection that the member is, or of which it is a copy. Invalid
         /// for a node between others and for its copies.
-        NodeId origin;
+        VertexId origin;
         static void archive(auto& ar, auto& self) { ar(self.node, self.origin); }
     };
 
-    NodeSet() = default;
-    NodeSet(std::vector<NodeId> nodes);
+    VertexSet() = default;
+    VertexSet(std::vector<VertexId> vertices);
 
     /// Returns the members in ascending order of nodes.
     const std::vector<Member>& members() const { return members_; }
     /// Returns the member of a node; null if the node is no member.
-    const Member* find(NodeId n) const;
-    bool contains(NodeId n) const { return find(n) != nullptr; }
+    const Member* find(VertexId n) const;
+    bool contains(VertexId n) const { return find(n) != nullptr; }
 
     /// Follows an edit; `mesh` is the mesh after the edit.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);

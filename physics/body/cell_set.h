@@ -11,12 +11,12 @@ namespace incise::physics {
 
 /// A set of elements. The parts of a divided member become members. Dead members stay in the set,
 /// so that an edit can be undone: Mesh::is_alive tells which members are alive.
-class ElementSet {
+class CellSet {
   public:
-    ElementSet(std::vector<ElementId> elements = {});
+    CellSet(std::vector<CellId> elements = {});
 
     /// Returns the members in ascending order.
-    const std::vector<ElementId>& members() const { return members_; }
+    const std::vector<CellId>& members() const { return members_; }
 
     /// Follows an edit; `mesh` is the mesh after the edit.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
@@ -26,7 +26,7 @@ class ElementSet {
     static void archive(auto& ar, auto& self) { ar(self.members_); }
 
   private:
-    std::vector<ElementId> members_;
+    std::vector<CellId> members_;
 };
 
 /// A set of faces. If an edit divides the element of a member, the faces of its parts that lie in
@@ -38,7 +38,7 @@ class FaceSet {
         FaceId face;
         /// Valid if a division moved the whole face to other elements: the first new part. The face
         /// that now has the number of the member lies inside the former element.
-        ElementId left_to;
+        CellId left_to;
         static void archive(auto& ar, auto& self) { ar(self.face, self.left_to); }
     };
 
