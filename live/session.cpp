@@ -156,9 +156,8 @@ std::vector<std::string> Session::execute(const Order& order) {
 scenario::HeldTool Session::checked(const AddTool& order) const {
     const sim::World& world = simulation_.world();
     if (order.name.empty()) throw InputError("a tool needs a name");
-    for (std::size_t i = 0; i < world.num_tools(); ++i)
-        if (world.tool({i}).name == order.name)
-            throw InputError("there is a tool '" + order.name + "' already");
+    if (world.find_tool(order.name))
+        throw InputError("there is a tool '" + order.name + "' already");
     require_within_reach(order.pose);
     if (const auto* definition = order.definition.get<scenario::Table>())
         for (const char* lengths : {"edge", "shape", "points"})
@@ -243,8 +242,7 @@ void Session::lead_tools(runner::Simulation::Interval step, double begin, double
 
 void Session::add_forces(std::span<const sim::ToolState> states, double weight) {
     for (const sim::ToolState& state : states) {
-        const auto tool = std::ranges::find(tools_, state.tool.index,
-                                            [](const LedTool& t) { return t.id.index; });
+        const auto tool = std::ranges::find(tools_, state.tool, &LedTool::id);
         if (tool == tools_.end()) continue;
         tool->force += weight * state.force;
         tool->torque += weight * state.torque;

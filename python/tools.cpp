@@ -15,8 +15,8 @@ namespace {
 /// state without the tool.
 WorldDriver& driver_of(const Tool& tool) {
     WorldDriver& driver = python::driver_of(tool.world);
-    if (tool.id.index >= driver.world().num_tools() ||
-        driver.world().tool(tool.id).name != tool.name)
+    const auto tools = driver.world().tools();
+    if (std::ranges::find(tools, tool.id) == tools.end())
         throw InputError("tool '" + tool.name +
                          "' is no longer in its world, which was restored to a state without it");
     return driver;

@@ -63,9 +63,9 @@ void write_vtu(const World& world, const py::object& path) {
 py::dict tools(const World& world) {
     const sim::World& body = driver_of(world).world();
     py::dict dict;
-    for (std::size_t i = 0; i < body.num_tools(); ++i) {
-        const std::string& name = body.tool({i}).name;
-        dict[py::str(name)] = Tool{world, {i}, name};
+    for (const sim::ToolId id : body.tools()) {
+        const std::string& name = body.tool(id).name;
+        dict[py::str(name)] = Tool{world, id, name};
     }
     return dict;
 }

@@ -40,7 +40,8 @@ WorldDriver::WorldDriver(scenario::Scenario scenario, scenario::Body body, bool 
       scripts_(world_, std::move(body.tools)),
       led_(scripts_.size()) {
     for (std::size_t i = 0; i < world_.model().num_constraints(); ++i)
-        constraints_.push_back({world_.model().constraint_name(i), {i}, {}, {}});
+        constraints_.push_back(
+            {world_.model().constraint_name(i), world_.constraints()[i], {}, {}});
     for (const physics::Load& load : world_.model().loads().all()) loads_.push_back(load.name);
     note_tools();
     if (scenario_.dynamics.mode == scenario::Mode::dynamic && is_endless_)
@@ -50,9 +51,9 @@ WorldDriver::WorldDriver(scenario::Scenario scenario, scenario::Body body, bool 
 
 void WorldDriver::note_tools() {
     auto feeling = std::make_shared<FeelingTools>();
-    for (std::size_t i = 0; i < world_.num_tools(); ++i)
-        if (const sim::ToolDef& tool = world_.tool({i}); cutting::feels_force(tool.shape)) {
-            feeling->ids.push_back({i});
+    for (const sim::ToolId id : world_.tools())
+        if (const sim::ToolDef& tool = world_.tool(id); cutting::feels_force(tool.shape)) {
+            feeling->ids.push_back(id);
             feeling->names.push_back(tool.name);
         }
     feeling_ = std::move(feeling);
@@ -68,10 +69,11 @@ double WorldDriver::next_step() const {
 void WorldDriver::begin_call() {
     for (std::size_t i = scripts_.size(); i < led_.size(); ++i) {
         Led& led = led_[i];
+        const sim::ToolId tool = world_.tools()[i];
         led.from.reset();
-        if (led.target && world_.is_tool_present({i})) led.from = world_.tool_pose({i});
+        if (led.target && world_.is_tool_present(tool)) led.from = world_.tool_pose(tool);
         led.length_from.reset();
-        if (led.length_target) led.length_from = world_.suture_length({i});
+        if (led.length_target) led.length_from = world_.suture_length(tool);
     }
     for (NamedConstraint& grasp : constraints_) grasp.from = grasp.pose;
 }
@@ -81,16 +83,17 @@ void WorldDriver::begin_call() {
 void WorldDriver::lead(double part, bool is_last) {
     for (std::size_t i = scripts_.size(); i < led_.size(); ++i) {
         const Led& led = led_[i];
+        const sim::ToolId tool = world_.tools()[i];
         if (led.target) {
             const bool is_there = is_last || !led.from;
             world_.set_tool_pose(
-                {i}, is_there ? *led.target : interpolate(*led.from, *led.target, part));
+                tool, is_there ? *led.target : interpolate(*led.from, *led.target, part));
         }
         if (led.length_target)
             world_.set_suture_length(
-                {i}, is_last ? *led.length_target
-                             : std::lerp(*led.length_from, *led.length_target, part));
-        if (led.leaves && is_last && world_.is_tool_present({i})) world_.withdraw_tool({i});
+                tool, is_last ? *led.length_target
+                              : std::lerp(*led.length_from, *led.length_target, part));
+        if (led.leaves && is_last && world_.is_tool_present(tool)) world_.withdraw_tool(tool);
     }
     for (NamedConstraint& grasp : constraints_)
         if (grasp.target) {
@@ -308,6 +311,8 @@ void WorldDriver::restore(std::string_view bytes) {
     scripts_ = std::move(scripts);
     led_ = std::move(led);
     constraints_ = std::move(constraints);
+    for (std::size_t i = 0; i < constraints_.size(); ++i)
+        constraints_[i].id = world_.constraints()[i];
     edits_ = std::move(edits);
     loads_.clear();
     for (const physics::Load& load : world_.model().loads().all()) loads_.push_back(load.name);

@@ -46,9 +46,7 @@ struct NamedConstraint {
     std::optional<Pose> pose;       ///< of a grasp, after the last step
     std::optional<Pose> target;     ///< of a grasp, at the end of the next call
     std::optional<Pose> from = {};  ///< of a grasp with a target, at the beginning of the call
-    static void archive(auto& ar, auto& self) {
-        ar(self.name, self.id.index, self.pose, self.target);
-    }
+    static void archive(auto& ar, auto& self) { ar(self.name, self.pose, self.target); }
 };
 
 /// A world, its scenario, and what leads its tools.
@@ -95,7 +93,6 @@ class WorldDriver {
     std::uint64_t topology_version() const { return version_base_ + world_.mesh().epoch(); }
 
     bool is_scripted(sim::ToolId tool) const { return tool.index < scripts_.size(); }
-    std::optional<sim::ToolId> find_tool(std::string_view name) const;
     /// Adds a tool that the program leads. Throws InputError for a name that is taken or not
     /// allowed, and as scenario::build_held_tool().
     sim::ToolId add_tool(const std::string& name, const scenario::Value& definition,
@@ -159,9 +156,9 @@ class WorldDriver {
     std::vector<std::string> warnings_;
     sim::World world_;
     runner::ScriptedTools scripts_;
-    std::vector<Led> led_;  // by the number of the tool
-    std::vector<NamedConstraint> constraints_;
-    std::vector<std::string> loads_;  // names, by the number of the load
+    std::vector<Led> led_;                      // by tool, in the order of World::tools()
+    std::vector<NamedConstraint> constraints_;  // in the order of World::constraints()
+    std::vector<std::string> loads_;            // names, in the order of World::loads()
     std::vector<sim::EditRecord> edits_;
     std::shared_ptr<const FeelingTools> feeling_;
     double last_step_ = 0.0;

@@ -37,16 +37,10 @@ bool is_at_once(const cutting::ToolShape& shape) {
 
 }  // namespace
 
-std::optional<sim::ToolId> WorldDriver::find_tool(std::string_view name) const {
-    for (std::size_t i = 0; i < world_.num_tools(); ++i)
-        if (world_.tool({i}).name == name) return sim::ToolId{i};
-    return std::nullopt;
-}
-
 sim::ToolId WorldDriver::add_tool(const std::string& name, const scenario::Value& definition,
                                   const std::optional<Pose>& pose) {
     require_name("tool", name);
-    if (find_tool(name))
+    if (world_.find_tool(name))
         throw InputError("tool '" + name + "': the world has a tool of this name already");
     if (pose) require_sound("tool '" + name + "'", *pose);
     scenario::HeldTool held = [&] {
@@ -65,7 +59,7 @@ sim::ToolId WorldDriver::add_tool(const std::string& name, const scenario::Value
         throw InputError("tool '" + name +
                          "': a cut has no pose: it lies in the frame of the world");
     const sim::ToolId tool = world_.add_tool({name, std::move(held.shape)});
-    led_.resize(world_.num_tools());
+    led_.resize(world_.tools().size());
     note_tools();
     add_warnings(held.warnings);
     if (pose || is_cut) world_.place_tool(tool, pose.value_or(Pose()));
@@ -197,7 +191,8 @@ const physics::Load& WorldDriver::load(const std::string& name) const {
 void WorldDriver::set_load_factor(const std::string& name, double factor) {
     load(name);
     const auto found = std::ranges::find(loads_, name);
-    world_.set_load_factor({static_cast<std::size_t>(found - loads_.begin())}, factor);
+    world_.set_load_factor(world_.loads()[static_cast<std::size_t>(found - loads_.begin())],
+                           factor);
 }
 
 }  // namespace incise::python

@@ -65,15 +65,15 @@ Quantities history_row(const sim::World& world, double time_step,
                std::array{reaction.x(), reaction.y(), reaction.z(), torque.x(), torque.y(),
                           torque.z()});
     }
-    for (std::size_t i = 0; i < world.num_tools(); ++i) {
-        if (!cutting::feels_force(world.tool({i}).shape)) continue;
+    for (const sim::ToolId id : world.tools()) {
+        if (!cutting::feels_force(world.tool(id).shape)) continue;
         Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
         for (const sim::ToolState& tool : world.report().tools)
-            if (tool.tool.index == i) {
+            if (tool.tool == id) {
                 force = tool.force;
                 torque = tool.torque;
             }
-        append(row, scenario::force_quantities(world.tool({i}).name),
+        append(row, scenario::force_quantities(world.tool(id).name),
                std::array{force.x(), force.y(), force.z(), torque.x(), torque.y(), torque.z()});
     }
     return row;

@@ -20,7 +20,7 @@ void ScriptedTools::move(sim::World& world, double from, double to,
                          std::vector<std::string>& warnings) {
     for (std::size_t i = 0; i < scripts_.size(); ++i) {
         const scenario::ToolPath& path = scripts_[i].path;
-        const sim::ToolId tool{i};
+        const sim::ToolId tool = world.tools()[i];
         if (std::holds_alternative<cutting::Suture>(world.tool(tool).shape)) {
             draw_suture(world, tool, from, to, warnings);
             continue;
@@ -77,20 +77,21 @@ void ScriptedTools::draw_suture(sim::World& world, sim::ToolId tool, double from
 void ScriptedTools::warn_of_lost_holds(const sim::World& world,
                                        std::vector<std::string>& warnings) {
     for (std::size_t i = 0; i < scripts_.size(); ++i) {
-        if (world.is_grasper_closed({i}) && world.num_held({i}) == 0 &&
+        const sim::ToolId tool = world.tools()[i];
+        if (world.is_grasper_closed(tool) && world.num_held(tool) == 0 &&
             std::ranges::find(lost_, i) == lost_.end()) {
             lost_.push_back(i);
-            warnings.push_back("grasper '" + world.tool({i}).name +
+            warnings.push_back("grasper '" + world.tool(tool).name +
                                "' holds nothing from t = " + format_number(world.time()) +
                                " s on: all tissue has slipped out of its jaws, or was removed");
             continue;
         }
-        const bool is_suture = std::holds_alternative<cutting::Suture>(world.tool({i}).shape);
-        if (!is_suture || !world.is_tool_present({i}) || world.is_suture_tied({i}) ||
+        const bool is_suture = std::holds_alternative<cutting::Suture>(world.tool(tool).shape);
+        if (!is_suture || !world.is_tool_present(tool) || world.is_suture_tied(tool) ||
             std::ranges::find(lost_, i) != lost_.end())
             continue;
         lost_.push_back(i);
-        warnings.push_back("suture '" + world.tool({i}).name +
+        warnings.push_back("suture '" + world.tool(tool).name +
                            "' holds nothing from t = " + format_number(world.time()) +
                            " s on: its thread has torn at max_force, or its tissue was removed");
     }

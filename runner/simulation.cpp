@@ -143,7 +143,8 @@ void Simulation::restore(ArchiveReader& ar) {
     warnings_.insert(warnings_.end(), added.begin(), added.end());
     if (!(time() < scenario_.dynamics.end_time))
         throw InputError("its time, " + format_number(time()) + " s, is not within the run");
-    if (world_.num_tools() < tools_.size()) throw InputError("its tools are not those of the run");
+    if (world_.tools().size() < tools_.size())
+        throw InputError("its tools are not those of the run");
     if (edits_.size() != ledger().num_edits())
         throw InputError("its ledger is not that of its edits");
     if (!(last_step_ >= 0.0 && last_step_ <= time()))
@@ -162,9 +163,8 @@ void Simulation::warn_of_short_steps(const sim::EditRecord& edit) {
         !(now < much_shorter * warned_step_))
         return;
     const cutting::ToolShape* shape = nullptr;
-    for (std::size_t i = 0; i < world_.num_tools(); ++i)
-        if (const sim::ToolDef& tool = world_.tool({i}); tool.name == edit.tool)
-            shape = &tool.shape;
+    for (const sim::ToolId id : world_.tools())
+        if (const sim::ToolDef& tool = world_.tool(id); tool.name == edit.tool) shape = &tool.shape;
     std::ostringstream text;
     text.precision(3);
     text << "tool '" << edit.tool << "', at t = " << edit.time << " s: its cut has left stiff "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/sim/world.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -70,22 +71,15 @@ topology::BoundarySurface& World::Parts::built_surface() {
     return *surface;
 }
 
-World::Parts::Tool& World::Parts::tool_of(ToolId id) {
-    if (id.index >= tools.size())
-        throw InputError("there is no tool " + std::to_string(id.index) + ": the world has " +
-                         std::to_string(tools.size()));
-    return tools[id.index];
-}
-
-void World::Parts::require_sound_pose(ToolId id, const Pose& pose) const {
+void World::Parts::require_sound_pose(const Tool& tool, const Pose& pose) {
     if (!pose.is_sound())
-        throw InputError("tool '" + tools[id.index].def.name +
+        throw InputError("tool '" + tool.def.name +
                          "': its pose must have a finite position, m, and a rotation of length 1");
 }
 
-void World::Parts::require_pose(ToolId id) const {
-    if (std::holds_alternative<cutting::Suture>(tools[id.index].def.shape))
-        throw InputError("tool '" + tools[id.index].def.name +
+void World::Parts::require_pose(const Tool& tool) {
+    if (std::holds_alternative<cutting::Suture>(tool.def.shape))
+        throw InputError("tool '" + tool.def.name +
                          "' is a suture, which has no pose: use tie_suture()");
 }
 
@@ -106,13 +100,13 @@ ToolId World::add_tool(ToolDef def) {
     if (const auto* blade = std::get_if<Blade>(&tool.def.shape))
         if (blade->mode == CutMode::split) tool.cut = p.cutter.begin_cut(blade->snap);
     p.tools.push_back(std::move(tool));
-    return {p.tools.size() - 1};
+    return p.tool_ids.add();
 }
 
 void World::place_tool(ToolId id, const Pose& pose) {
     Parts::Tool& tool = parts_->tool_of(id);
-    parts_->require_sound_pose(id, pose);
-    parts_->require_pose(id);
+    Parts::require_sound_pose(tool, pose);
+    Parts::require_pose(tool);
     if (tool.cut && parts_->cutter.is_in_tissue(*tool.cut))
         throw InputError("tool '" + tool.def.name +
                          "' is in the tissue: withdraw it before it is put elsewhere");
@@ -124,8 +118,8 @@ void World::place_tool(ToolId id, const Pose& pose) {
 
 void World::set_tool_pose(ToolId id, const Pose& pose) {
     Parts::Tool& tool = parts_->tool_of(id);
-    parts_->require_sound_pose(id, pose);
-    parts_->require_pose(id);
+    Parts::require_sound_pose(tool, pose);
+    Parts::require_pose(tool);
     if (!tool.is_present) tool.pose = pose;
     tool.is_present = true;
     tool.target = pose;
@@ -135,7 +129,7 @@ void World::withdraw_tool(ToolId id, const Pose* pose_before) {
     Parts::Tool& tool = parts_->tool_of(id);
     if (!tool.is_present)
         throw InputError("tool '" + tool.def.name + "' is not there to be withdrawn");
-    if (pose_before) parts_->require_sound_pose(id, *pose_before);
+    if (pose_before) Parts::require_sound_pose(tool, *pose_before);
     tool.is_leaving = true;
     tool.pose_before_end.reset();
     if (pose_before) tool.pose_before_end = *pose_before;
@@ -215,14 +209,23 @@ bool World::is_suture_tied(ToolId id) const {
 bool World::is_tool_present(ToolId id) const { return parts_->tool_of(id).is_present; }
 Pose World::tool_pose(ToolId id) const { return parts_->tool_of(id).pose; }
 const ToolDef& World::tool(ToolId id) const { return parts_->tool_of(id).def; }
-std::size_t World::num_tools() const { return parts_->tools.size(); }
+std::optional<ToolId> World::find_tool(std::string_view name) const {
+    const auto found = std::ranges::find(parts_->tools, name,
+                                         [](const Parts::Tool& tool) { return tool.def.name; });
+    if (found == parts_->tools.end()) return std::nullopt;
+    return tools()[static_cast<std::size_t>(found - parts_->tools.begin())];
+}
+std::span<const ToolId> World::tools() const { return parts_->tool_ids.all(); }
 
 ConstraintId World::add_constraint(physics::Constraint constraint) {
     Parts& p = *parts_;
     require_sound(constraint, p.mesh);
     p.model.add_constraint(std::move(constraint));
-    return {p.constraints.add()};
+    p.grasps.emplace_back();
+    return p.constraints.add();
 }
+
+std::span<const ConstraintId> World::constraints() const { return parts_->constraints.all(); }
 
 ConstraintId World::grasp(std::string name, std::vector<VertexId> nodes, const Pose& pose) {
     Parts& p = *parts_;
@@ -232,29 +235,29 @@ ConstraintId World::grasp(std::string name, std::vector<VertexId> nodes, const P
     if (!pose.is_sound()) throw InputError("grasp '" + name + "': its pose is none");
     const ConstraintId id =
         add_constraint(physics::make_grip(std::move(name), std::move(nodes), pose));
-    p.grasps[id.index] = {pose, pose};
+    p.grasps.back() = {pose, pose};
     return id;
 }
 
 void World::set_grasp_pose(ConstraintId grasp, const Pose& pose) {
     Parts& p = *parts_;
-    const std::size_t index = p.constraints.position_of(grasp.index);
+    const std::size_t index = p.constraints.position_of(grasp);
     const std::string name = "constraint '" + p.model.constraint_name(index) + "'";
-    const auto found = p.grasps.find(grasp.index);
-    if (found == p.grasps.end()) throw InputError(name + " is no grasp");
+    if (!p.grasps[index]) throw InputError(name + " is no grasp");
     if (!pose.is_sound()) throw InputError(name + ": its pose is none");
-    found->second.target = pose;
+    p.grasps[index]->target = pose;
 }
 
 void World::release(ConstraintId constraint) {
     Parts& p = *parts_;
-    p.model.remove_constraint(p.constraints.position_of(constraint.index));
-    p.constraints.remove(constraint.index);
-    p.grasps.erase(constraint.index);
+    const std::size_t index = p.constraints.position_of(constraint);
+    p.model.remove_constraint(index);
+    p.constraints.remove(constraint);
+    p.grasps.erase(p.grasps.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 const physics::Reaction& World::reaction(ConstraintId constraint) const {
-    return parts_->model.reactions()[parts_->constraints.position_of(constraint.index)];
+    return parts_->model.reactions()[parts_->constraints.position_of(constraint)];
 }
 
 void World::add_force_term(std::unique_ptr<physics::ForceTerm> term) {
@@ -276,12 +279,14 @@ LoadId World::add_load(physics::Load load) {
     require_sound(load, p.mesh);
     p.model.add_load(std::move(load));
     p.loads_have_changed = true;
-    return {p.loads.add()};
+    return p.loads.add();
 }
+
+std::span<const LoadId> World::loads() const { return parts_->loads.all(); }
 
 void World::set_load_factor(LoadId load, double factor) {
     Parts& p = *parts_;
-    const std::size_t index = p.loads.position_of(load.index);
+    const std::size_t index = p.loads.position_of(load);
     if (!std::isfinite(factor))
         throw InputError("load '" + p.model.loads().all()[index].name +
                          "': its factor is not finite");
@@ -291,8 +296,8 @@ void World::set_load_factor(LoadId load, double factor) {
 
 void World::remove_load(LoadId load) {
     Parts& p = *parts_;
-    p.model.remove_load(p.loads.position_of(load.index));
-    p.loads.remove(load.index);
+    p.model.remove_load(p.loads.position_of(load));
+    p.loads.remove(load);
     p.loads_have_changed = true;
 }
 

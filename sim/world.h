@@ -20,6 +20,7 @@
 #include "incise/physics/body/body_arrays.h"
 #include "incise/physics/body/force_term.h"
 #include "incise/physics/body/model.h"
+#include "incise/sim/handles.h"
 #include "incise/sim/ledger.h"
 #include "incise/topology/boundary_surface.h"
 #include "incise/topology/mesh.h"
@@ -60,25 +61,9 @@ struct WorldDef {
     int num_threads = 1;  ///< does not change any result
 };
 
-/// The number of a tool in its world. It is not used for another tool, except after a restore()
-/// that forgets the tool. As with the numbers below, worlds count alike: that of a tool of another
-/// world is not recognised.
-struct ToolId {
-    std::size_t index = 0;
-    bool operator==(const ToolId&) const = default;
-};
-
-/// The number of a constraint in its world. See ToolId.
-struct ConstraintId {
-    std::size_t index = 0;
-    bool operator==(const ConstraintId&) const = default;
-};
-
-/// The number of a load in its world. See ToolId.
-struct LoadId {
-    std::size_t index = 0;
-    bool operator==(const LoadId&) const = default;
-};
+using ToolId = Handle<struct ToolTag>;
+using ConstraintId = Handle<struct ConstraintTag>;
+using LoadId = Handle<struct LoadTag>;
 
 /// The definition of a tool.
 struct ToolDef {
@@ -236,10 +221,12 @@ class World {
     bool is_tool_present(ToolId tool) const;
     Pose tool_pose(ToolId tool) const;
     const ToolDef& tool(ToolId tool) const;
-    std::size_t num_tools() const;
+    std::optional<ToolId> find_tool(std::string_view name) const;
+    /// Returns the tools in the order in which they were added.
+    /// @lifetime Until a tool is added or the world is restored.
+    std::span<const ToolId> tools() const;
 
     /// Adds a constraint with a known motion: its curves are functions of the time of the world.
-    /// The constraints of the definition have the first numbers.
     /// Throws InputError, and changes nothing, if a node does not exist, or if another constraint
     /// prescribes another value of a component of a node.
     ConstraintId add_constraint(physics::Constraint constraint);
@@ -258,13 +245,20 @@ class World {
     /// the last step.
     const physics::Reaction& reaction(ConstraintId constraint) const;
 
-    /// Adds a load. The loads of the definition have the first numbers.
+    /// Returns the constraints, in the order of model().constraints(): those of the definition,
+    /// then those that were added.
+    /// @lifetime Until the list changes or the world is restored.
+    std::span<const ConstraintId> constraints() const;
+
+    /// Adds a load.
     /// Throws InputError, and changes nothing, if the load acts on nothing, or on nodes, faces or
     /// elements that do not exist.
     LoadId add_load(physics::Load load);
     /// Scales a load by a constant factor, which replaces its previous factor from now on.
     void set_load_factor(LoadId load, double factor);
     void remove_load(LoadId load);
+    /// Returns the loads, in the order of model().loads(); see constraints().
+    std::span<const LoadId> loads() const;
 
     /// Adds a force of your own, such as springs to points in space or a field. It acts in all
     /// steps from the next one on. Bytes of save() do not contain it: restore() keeps the terms
@@ -309,7 +303,7 @@ class World {
 
     /// The format of save(). It differs between two builds of Incise if save() or a checkpoint of a
     /// run lists other members, or if a world computes other bits.
-    static constexpr std::uint32_t state_format = 15;
+    static constexpr std::uint32_t state_format = 16;
 
     /// Returns the state of the world as bytes: mesh, positions, velocities, gravity, damping,
     /// constraints, loads, contact, tools and cuts in progress. The materials and the solver are

@@ -27,7 +27,8 @@ double read_time(ArchiveReader& ar) {
 }  // namespace
 
 World::Parts::Parts(const Parts& former, ArchiveReader& ar)
-    : mesh(topology::load_mesh(ar)),
+    : number(former.number),
+      mesh(topology::load_mesh(ar)),
       time(read_time(ar)),
       model(mesh, former.model.elements().materials(), ar, time),
       contact(former.contact ? make_contact(former.contact->settings(), former.solver) : nullptr),
@@ -37,8 +38,11 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
       cutter(mesh, model.mesh_positions()) {
     integrator->restore(ar, model);
     ledger.restore(ar);
-    ar(cutter, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval, has_moved,
-       has_failed);
+    ar(cutter, tool_ids, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval,
+       has_moved, has_failed);
+    tool_ids.take_over(former.tool_ids, tools.size());
+    constraints.take_over(former.constraints, model.num_constraints());
+    loads.take_over(former.loads, model.loads().all().size());
     if (ar.read<bool>() != (contact != nullptr))
         throw InputError(
             "the world that was saved has contact, and this one has not, or the other "
@@ -53,14 +57,11 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
 }
 
 void World::Parts::require_sound_grasps() const {
-    const bool fits = constraints.fits(model.num_constraints()) &&
-                      loads.fits(model.loads().all().size()) &&
-                      std::ranges::all_of(grasps, [&](const auto& row) {
-                          const std::size_t index = constraints.position_of(row.first);
-                          return row.second.pose.is_sound() && row.second.target.is_sound() &&
-                                 !model.constraints().all()[index].grip.is_empty();
-                      });
-    if (!fits) throw InputError("its constraints and loads are those of another world");
+    bool fits = grasps.size() == model.num_constraints();
+    for (std::size_t i = 0; i < grasps.size() && fits; ++i)
+        fits = !grasps[i] || (grasps[i]->pose.is_sound() && grasps[i]->target.is_sound() &&
+                              !model.constraints().all()[i].grip.is_empty());
+    if (!fits) throw InputError("its grasps are those of another world");
 }
 
 void World::Parts::save(ArchiveWriter& ar) const {
@@ -69,8 +70,8 @@ void World::Parts::save(ArchiveWriter& ar) const {
     model.save(ar);
     integrator->save(ar);
     ledger.save(ar);
-    ar(cutter, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval, has_moved,
-       has_failed);
+    ar(cutter, tool_ids, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval,
+       has_moved, has_failed);
     ar(contact != nullptr);
     if (contact) contact->save(ar);
 }
@@ -79,12 +80,11 @@ void World::Parts::save(ArchiveWriter& ar) const {
 void World::Parts::prepare_tools() {
     std::vector<const cutting::ToolShape*> shapes;
     if (!cutter.is_on(mesh)) throw InputError("what its tools remember is of another body");
-    for (std::size_t i = 0; i < tools.size(); ++i) {
-        Tool& tool = tools[i];
+    for (Tool& tool : tools) {
         require_sound(tool.def);
-        require_sound_pose({i}, tool.pose);
-        require_sound_pose({i}, tool.target);
-        if (tool.pose_before_end) require_sound_pose({i}, *tool.pose_before_end);
+        require_sound_pose(tool, tool.pose);
+        require_sound_pose(tool, tool.target);
+        if (tool.pose_before_end) require_sound_pose(tool, *tool.pose_before_end);
         if (!(tool.length >= 0.0 && tool.target_length >= 0.0 &&
               std::isfinite(tool.length + tool.target_length)))
             throw InputError("the length of a thread is not sound");

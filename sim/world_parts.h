@@ -12,7 +12,7 @@
 #include "incise/base/archive.h"
 #include "incise/contact/contact.h"
 #include "incise/physics/solve/integrator.h"
-#include "incise/sim/numbering.h"
+#include "incise/sim/handles.h"
 #include "incise/sim/world.h"
 
 namespace incise::sim {
@@ -124,13 +124,14 @@ struct World::Parts {
     void cut_with(ToolId id, double end);
     cutting::Split split_with(Tool& tool);
     void follow(ToolId id, cutting::Split done, double end);
-    Tool& tool_of(ToolId id);
+    Tool& tool_of(ToolId id) { return tools[tool_ids.position_of(id)]; }
     const cutting::Grasper& grasper_of(ToolId id);
     const cutting::Suture& suture_of(ToolId id);
     topology::BoundarySurface& built_surface();
-    void require_sound_pose(ToolId id, const Pose& pose) const;
-    void require_pose(ToolId id) const;
+    static void require_sound_pose(const Tool& tool, const Pose& pose);
+    static void require_pose(const Tool& tool);
 
+    std::uint32_t number;  // of the world in this process
     topology::Mesh mesh;
     double time = 0.0;
     physics::Model model;
@@ -140,10 +141,11 @@ struct World::Parts {
     Solver solver;
     Ledger ledger;
     cutting::Cutter cutter;
-    std::vector<Tool> tools;
-    Numbering constraints{"constraint"};
-    std::map<std::size_t, Grasp> grasps;  // by the number of the constraint
-    Numbering loads{"load"};
+    HandleTable<ToolId> tool_ids{"tool", number};
+    std::vector<Tool> tools;  // by index of their ids, too, as none is removed
+    HandleTable<ConstraintId> constraints{"constraint", number};
+    std::vector<std::optional<Grasp>> grasps;  // by constraint, of those that are one
+    HandleTable<LoadId> loads{"load", number};
     bool loads_have_changed = false;  // since the forces were computed
     StepReport report;
     std::uint64_t num_steps = 0;

@@ -1,6 +1,7 @@
 // Construction of a world, and its main loop.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -19,6 +20,12 @@ using topology::ChangeSet;
 using topology::Mesh;
 
 namespace {
+
+/// Returns the number of a new world. Ids have it, so that a world refuses those of another one.
+std::uint32_t next_number() {
+    static std::atomic<std::uint32_t> last = 0;
+    return ++last;
+}
 
 Mesh mesh_of(std::variant<topology::MeshData, Mesh> mesh) {
     if (auto* built = std::get_if<Mesh>(&mesh)) return std::move(*built);
@@ -52,7 +59,8 @@ std::unique_ptr<contact::Contact> World::Parts::make_contact(
 }
 
 World::Parts::Parts(WorldDef def)
-    : mesh(mesh_of(std::move(def.mesh))),
+    : number(next_number()),
+      mesh(mesh_of(std::move(def.mesh))),
       // Braces fix the order: the definition is checked before parts of it are moved.
       model{mesh,
             materials_of(def, mesh),
@@ -62,8 +70,9 @@ World::Parts::Parts(WorldDef def)
       solver(def.solver),
       ledger(model),
       cutter(mesh, model.mesh_positions()),
-      constraints("constraint", model.num_constraints()),
-      loads("load", model.loads().all().size()),
+      constraints("constraint", number, model.num_constraints()),
+      grasps(model.num_constraints()),
+      loads("load", number, model.loads().all().size()),
       stable_step(model.stable_step()),
       bound_interval{topology::mean_element_length(mesh)} {
     model.set_num_threads(def.num_threads);
@@ -78,15 +87,16 @@ void World::Parts::step_to(double end) {
     const auto cut = [&] {
         has_moved = true;
         cutter.follow_motion(mesh, model.mesh_positions());
-        for (std::size_t i = 0; i < tools.size(); ++i) cut_with({i}, end);
+        for (const ToolId id : tool_ids.all()) cut_with(id, end);
     };
 
     if (loads_have_changed) model.compute_forces(time);
     loads_have_changed = false;
-    for (auto& [number, grasp] : grasps) {
-        model.set_grip(constraints.position_of(number),
-                       physics::TimeCurve<Pose>({{time, grasp.pose}, {end, grasp.target}}));
-        grasp.pose = grasp.target;
+    for (std::size_t i = 0; i < grasps.size(); ++i) {
+        if (!grasps[i]) continue;
+        auto& [pose, target] = *grasps[i];
+        model.set_grip(i, physics::TimeCurve<Pose>({{time, pose}, {end, target}}));
+        pose = target;
     }
     move_to(end);
     time = end;
@@ -102,7 +112,7 @@ void World::Parts::step_to(double end) {
     model.compute_forces(end);
     if (contact && !report.edits.empty()) contact->follow(model, built_surface());
     update_stable_step();
-    for (std::size_t i = 0; i < tools.size(); ++i) report_tool({i});
+    for (const ToolId id : tool_ids.all()) report_tool(id);
     report_contact();
 }
 

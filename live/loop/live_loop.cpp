@@ -195,10 +195,7 @@ std::string LiveLoop::new_name(const std::string& kind) {
     const sim::World& world = session_.world();
     while (true) {
         std::string name = kind + "_" + std::to_string(++last_numbers_[kind]);
-        bool is_taken = false;
-        for (std::size_t i = 0; i < world.num_tools(); ++i)
-            is_taken = is_taken || world.tool({i}).name == name;
-        if (!is_taken) return name;
+        if (!world.find_tool(name)) return name;
     }
 }
 

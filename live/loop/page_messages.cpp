@@ -28,9 +28,10 @@ PageMessages::PageMessages(const Session& session, const PictureMaker& pictures)
     : session_(session), pictures_(pictures) {
     const auto& specs = session.simulation().scenario().tools;
     for (std::size_t i = 0; i < specs.size(); ++i)
-        if (auto definition = live::json_of(session.world().tool({i}).shape))
+        if (const sim::ToolId id = session.world().tools()[i];
+            auto definition = live::json_of(session.world().tool(id).shape))
             scripted_tools_.push_back(
-                {{i}, specs[i].name, specs[i].is_obstacle, std::move(*definition)});
+                {id, specs[i].name, specs[i].is_obstacle, std::move(*definition)});
 }
 
 std::string PageMessages::hello(bool is_operator) const {
@@ -100,7 +101,7 @@ Json PageMessages::state_of(const ScriptedTool& tool) const {
     if (!world.is_tool_present(tool.id)) return {{"present", false}};
     Json state = {{"present", true}, {"pose", json_of(world.tool_pose(tool.id))}};
     for (const sim::ToolState& row : world.report().tools)
-        if (row.tool.index == tool.id.index) state["force"] = json_of(row.force);
+        if (row.tool == tool.id) state["force"] = json_of(row.force);
     return state;
 }
 

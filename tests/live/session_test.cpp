@@ -62,7 +62,8 @@ TEST(Session, LeadsToolsEvenlyWithinATick) {
       public:
         std::vector<double> heights;
         void on_step(const runner::Simulation& simulation) override {
-            heights.push_back(simulation.world().tool_pose({1}).position.z());
+            heights.push_back(
+                simulation.world().tool_pose(simulation.world().tools()[1]).position.z());
         }
     } watch;
     session.simulation().add_observer(watch);
@@ -159,7 +160,7 @@ TEST(Session, DrawsAThreadEvenlyWithinATick) {
       public:
         std::vector<double> lengths;
         void on_step(const runner::Simulation& simulation) override {
-            lengths.push_back(simulation.world().suture_length({1}));
+            lengths.push_back(simulation.world().suture_length(simulation.world().tools()[1]));
         }
     } watch;
     session.simulation().add_observer(watch);

@@ -39,7 +39,7 @@ TEST(TouchingTools, ASutureIsTiedAndDrawnAtItsTimes) {
     Simulation simulation(folder.scenario(soft_cube + dynamics(0.3, "damping = 20\n") +
                                           suture("tighten = { over = 0.1, length = 0.05 }\n") +
                                           "[output]\ninterval = 0.01\n"));
-    const ToolId thread{0};
+    const ToolId thread = simulation.world().tools()[0];
     run_to(simulation, 0.019);
     EXPECT_FALSE(simulation.world().is_suture_tied(thread));
     run_to(simulation, 0.07);

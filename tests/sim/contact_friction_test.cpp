@@ -132,7 +132,7 @@ void push_along_x(World& world, double speed, const Part& part) {
 double steady_push(World& world, std::size_t constraint, double mass) {
     run_until(world, 0.1);
     return mean_until(world, 0.15,
-                      [&] { return world.reaction(ConstraintId{constraint}).force.x(); }) /
+                      [&] { return world.reaction(world.constraints()[constraint]).force.x(); }) /
            (gravity * mass);
 }
 

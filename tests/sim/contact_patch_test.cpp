@@ -56,7 +56,7 @@ PressedCube press_cube(Plates plates, double friction, const CutWorld& cut) {
     const std::size_t num_nodes = world.mesh().num_nodes();
     if (cut) cut(world);
     run_until(world, 2.0);
-    PressedCube pressed{world.reaction(ConstraintId{0}).force.z(), {}};
+    PressedCube pressed{world.reaction(world.constraints()[0]).force.z(), {}};
     for (std::size_t n = 0; n < num_nodes; ++n)
         pressed.displacements.push_back(world.positions()[n] -
                                         world.mesh().rest_position(VertexId(n)));

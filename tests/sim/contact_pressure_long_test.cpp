@@ -435,7 +435,7 @@ double tension_ratio(double friction, double angle) {
     world.add_constraint(std::move(draw));
     run_until(world, 0.025);
     return mean_until(world, 0.035,
-                      [&] { return world.reaction(ConstraintId{0}).force.dot(out); }) /
+                      [&] { return world.reaction(world.constraints()[0]).force.dot(out); }) /
            pull;
 }
 

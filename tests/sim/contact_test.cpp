@@ -107,7 +107,7 @@ double pressing_force(double friction, bool is_cut) {
     World world = pressed(std::move(def));
     if (is_cut) cut_along(world, {0.05, 0.05, 0.049}, {0.3, 0.1, 1.0});
     run_until(world, 1.2);
-    return world.reaction(ConstraintId{0}).force.z();
+    return world.reaction(world.constraints()[0]).force.z();
 }
 
 // A cut that is closed and cannot slip is no cut. Without friction the slope of the cut slips.
@@ -150,7 +150,7 @@ TEST(Contact, OfABallExertsWhatTheFloorBears) {
     move_tool(world, ball, {0.05, 0.05, size + 0.012}, 0.7);
     const StepReport& report = world.report();
     ASSERT_EQ(report.tools.size(), 1u);
-    const double floor = world.reaction(ConstraintId{0}).force.z();
+    const double floor = world.reaction(world.constraints()[0]).force.z();
     EXPECT_GT(report.tools[0].force.z(), 0.05);
     EXPECT_NEAR(report.tools[0].force.z(), floor, 0.01 * floor);
     EXPECT_LT(report.tools[0].force.head<2>().norm(), 0.1 * floor);
@@ -221,10 +221,10 @@ TEST(Contact, InAStepOfPartsBalancesMomentum) {
         world.set_tool_pose(ball, at({0.05, 0.05, size + radius - move * i}));
         const StepReport& report = world.step(dt);
         EXPECT_GT(report.num_parts, 1u);
-        const Vec3 force = world.reaction(ConstraintId{0}).force - report.tools[0].force +
+        const Vec3 force = world.reaction(world.constraints()[0]).force - report.tools[0].force +
                            before.mass * Vec3(0, 0, -9.81);
         const Vec3 change = world.ledger().body_totals().totals.momentum - before.momentum;
-        largest = std::max(largest, world.reaction(ConstraintId{0}).force.norm());
+        largest = std::max(largest, world.reaction(world.constraints()[0]).force.norm());
         EXPECT_LT((change - dt * force).norm(), 1e-11 * dt * largest) << i;
     }
 }
@@ -256,7 +256,7 @@ TEST(Contact, BesideAMovingLidTakesEnergyAndGivesNone) {
     for (int i = 0; i < 400; ++i) {
         const double dt = 1e-3;
         world.step(dt);
-        work += world.reaction(ConstraintId{1}).force.z() * -pressed_by / pressed_in * dt;
+        work += world.reaction(world.constraints()[1]).force.z() * -pressed_by / pressed_in * dt;
     }
     EXPECT_GT(work, 1e-4);
     EXPECT_NEAR(world.model().external_work(), work, 0.02 * work);
@@ -353,7 +353,7 @@ TEST(Contact, OfAGrasperCarriesTissueAndFeelsItsForce) {
                     1e-4);
     const double force = world.report().tools[0].force.z();  // tissue draws it up
     EXPECT_GT(force, 0.1);
-    EXPECT_NEAR(force, world.reaction(ConstraintId{0}).force.z(), 0.01 * force);
+    EXPECT_NEAR(force, world.reaction(world.constraints()[0]).force.z(), 0.01 * force);
     EXPECT_LT(world.ledger().energy_error(), 0.01);
     world.open_grasper(grasper);
     EXPECT_FALSE(world.is_grasper_closed(grasper));

@@ -141,7 +141,7 @@ TEST(CuttingForce, BelowItsThresholdOnlyPushes) {
     EXPECT_GT(force, 0.05);
     EXPECT_LT(force, 20.0 * size);
     // At rest the floor bears it.
-    EXPECT_NEAR(-world.reaction(ConstraintId{0}).force.x(), force, 0.02 * force);
+    EXPECT_NEAR(-world.reaction(world.constraints()[0]).force.x(), force, 0.02 * force);
 }
 
 TEST(CuttingForce, GoesOnBitForBitAfterARestore) {

@@ -90,6 +90,13 @@ class Session {
         for (int i = from; i < to; ++i) step(i);
     }
     World& world() { return world_; }
+    /// Goes on from the state of any session of the same kind.
+    void restore(const std::string& bytes) {
+        world_.restore(bytes);
+        // Beside the floor there is the grasp, if anything.
+        grasp_ = world_.constraints().size() > 1 ? world_.constraints().back() : ConstraintId();
+        load_ = world_.loads().empty() ? LoadId() : world_.loads().back();
+    }
 
     static constexpr int num_steps = 60;
 
@@ -120,7 +127,7 @@ class Session {
 
     World world_;
     ToolId knife_{};
-    ConstraintId grasp_{1};  // as numbers are given out: a restored session knows them too
+    ConstraintId grasp_{};
     LoadId load_{0};
 };
 

@@ -98,7 +98,7 @@ inline std::optional<std::string> failure_in_a_world(StrainedCut c, double safet
         while (world.time() < StrainedCut::end_at) {
             if (!was_cut && world.time() >= StrainedCut::cut_at) {
                 was_cut = true;
-                if (c.is_released) world.release(ConstraintId{1});
+                if (c.is_released) world.release(world.constraints()[1]);
                 if (c.is_cut) {
                     const ToolId knife = world.add_tool({"knife", c.cut});
                     world.set_tool_pose(knife, Pose());

@@ -41,7 +41,7 @@ TEST(StrainedStep, FollowsStrainAndReturns) {
     EXPECT_LT(drawn.stable_step(), 0.9 * drawn.rest_stable_step());
     EXPECT_GT(drawn.stable_step(), 0.3 * drawn.rest_stable_step());
     const double rest = drawn.rest_stable_step();
-    drawn.release(ConstraintId{1});
+    drawn.release(drawn.constraints()[1]);
     while (drawn.time() < 3.0) drawn.step(0.8 * drawn.stable_step());
     EXPECT_EQ(drawn.rest_stable_step(), rest);
     EXPECT_GT(drawn.stable_step(), 0.97 * rest);

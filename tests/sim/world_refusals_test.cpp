@@ -26,13 +26,13 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
         {[&] { world.step_to(world.time()); }, "it must go forward"},
         {[&] { world.set_tool_pose({7}, {}); }, "there is no tool 7"},
         {[&] { world.withdraw_tool({3}); }, "there is no tool 3"},
-        {[&] { world.place_tool({0}, {}); }, "withdraw it before it is put elsewhere"},
+        {[&] { world.place_tool(world.tools()[0], {}); }, "withdraw it before it is put elsewhere"},
         {[&] {
-             world.set_tool_pose({0}, at({nan, 0, 0}));
+             world.set_tool_pose(world.tools()[0], at({nan, 0, 0}));
          },
          "its pose must have"},
         {[&] {
-             world.set_tool_pose({0}, {Eigen::Quaterniond(2, 0, 0, 0), Vec3::Zero()});
+             world.set_tool_pose(world.tools()[0], {Eigen::Quaterniond(2, 0, 0, 0), Vec3::Zero()});
          },
          "its pose must have"},
         {[&] {
@@ -56,7 +56,7 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
          "is held in x by both 'floor' and 'more'"},
         {[&] { world.add_constraint({.name = "none"}); }, "it has no node"},
         {[&] { world.grasp("hand", {VertexId(99999)}, {}); }, "there is no node 99999"},
-        {[&] { world.set_grasp_pose({0}, {}); }, "is no grasp"},
+        {[&] { world.set_grasp_pose(world.constraints()[0], {}); }, "is no grasp"},
         {[&] { world.set_grasp_pose({9}, {}); }, "there is no constraint 9"},
         {[&] { world.release({9}); }, "there is no constraint 9"},
         {[&] { world.remove_load({4}); }, "there is no load 4"},
@@ -75,7 +75,7 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
         {[&] {
              physics::Constraint grip =
                  physics::make_grip("hand", {VertexId(124)}, at({0, 0, size}));
-             grip.grip = physics::TimeCurve<Pose>({{1.0, at({})}, {0.0, at({})}});
+             grip.grip = physics::TimeCurve<Pose>({{1.0, Pose()}, {0.0, Pose()}});
              world.add_constraint(std::move(grip));
          },
          "times do not ascend"},
@@ -96,6 +96,60 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
     Session undisturbed(held_world());
     undisturbed.run(0, Session::num_steps);
     EXPECT_TRUE(world.save() == undisturbed.world().save());
+}
+
+TEST(World, RefusesIdsOfWhatItDoesNotHave) {
+    World world(held_world()), other(held_world());
+    const std::size_t num_constraints = world.constraints().size();
+    const auto hold = [](World& in) {
+        const auto top = nodes_where(in, [](const Vec3& x) { return x.z() == size; });
+        return in.grasp("hand", top, Pose());
+    };
+    const auto add_plane = [](World& in) {
+        return in.add_tool({"plane", cutting::PlaneCut{{0, 0, 0.5 * size}, Vec3::UnitZ()}});
+    };
+    // Another one has the place of what was removed.
+    const ConstraintId removed = hold(world);
+    world.release(removed);
+    const ConstraintId hand = hold(world);
+    EXPECT_EQ(hand.index, removed.index);
+    const std::string saved = world.save();
+    // A restored world gives the place of what it has forgotten to others.
+    const ToolId forgotten = add_plane(world);
+    const LoadId forgotten_load = world.add_load(
+        {.name = "push",
+         .kind = physics::NodalLoad{physics::VertexSet(std::vector{VertexId(124)}), {1, 0, 0}}});
+    world.restore(saved);
+    const ToolId plane = add_plane(world);
+    EXPECT_EQ(plane.index, forgotten.index);
+
+    const ToolId plane_of_other = add_plane(other);
+    const std::vector<std::pair<std::function<void()>, const char*>> misuses = {
+        {[&] { world.set_grasp_pose(removed, Pose()); }, "is no longer there"},
+        {[&] { world.release(removed); }, "is no longer there"},
+        {[&] { world.set_tool_pose(forgotten, Pose()); }, "is no longer there"},
+        {[&] { world.set_load_factor(forgotten_load, 2.0); }, "is no longer there"},
+        {[&] { world.withdraw_tool(plane_of_other); }, "of another world"},
+        {[&] { other.release(hand); }, "of another world"},
+        {[&] { world.set_tool_pose(ToolId(), Pose()); }, "there is no tool 0"}};
+    for (const auto& [misuse, why] : misuses) {
+        const std::string message = input_error_of(misuse);
+        EXPECT_NE(message.find(why), std::string::npos) << message << " for " << why;
+    }
+    // What is there is still named by the same ids, also in a world that was moved.
+    World moved = std::move(world);
+    moved.set_grasp_pose(hand, Pose());
+    moved.set_tool_pose(plane, Pose());
+    EXPECT_EQ(moved.find_tool("plane"), plane);
+    moved.release(hand);
+    EXPECT_EQ(moved.constraints().size(), num_constraints);
+    // Ids of a saved world name the same in another one that is restored to its state, but no more.
+    other.restore(saved);
+    other.set_grasp_pose(hand, Pose());
+    const ToolId only_there = add_plane(moved);
+    add_plane(other);
+    EXPECT_NE(input_error_of([&] { other.withdraw_tool(only_there); }).find("of another world"),
+              std::string::npos);
 }
 
 TEST(World, RefusesDefinitionsThatCannotBe) {
