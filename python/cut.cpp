@@ -58,7 +58,8 @@ topology::SurfaceData surface_from(const py::object& given, const std::string& n
         io::SurfaceFile file = io::read_surface(file_from(given, name, "surface file"));
         for (const std::string& defect : cutting::defects_of_surface(file.surface))
             file.warnings.push_back(defect);
-        for (const std::string& warning : file.warnings) pass_warning(name + ": " + warning);
+        const std::string prefix = name + ": ";
+        for (const std::string& warning : file.warnings) pass_warning(prefix + warning);
         return std::move(file.surface);
     }
     require_parts(given, 2, name, "a file, or a pair of points and triangles");

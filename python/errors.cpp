@@ -54,6 +54,7 @@ void register_errors(py::module_& module) {
         with(base_error, nullptr));
     output_error = new_exception(module, "OutputError", "A file that cannot be written.",
                                  with(base_error, PyExc_OSError));
+    // Its type is that of pybind11. NOLINTNEXTLINE(performance-unnecessary-value-param)
     py::register_exception_translator([](std::exception_ptr thrown) {
         try {
             if (thrown) std::rethrow_exception(thrown);

@@ -53,7 +53,8 @@ void pass_warnings(const World& world) {
 py::array_t<double> matrix_of(std::span<const Vec3> points) {
     static_assert(sizeof(Vec3) == 3 * sizeof(double));
     py::array_t<double> array({static_cast<py::ssize_t>(points.size()), py::ssize_t{3}});
-    if (!points.empty()) std::memcpy(array.mutable_data(), points.data(), points.size_bytes());
+    if (!points.empty())
+        std::memcpy(array.mutable_data(), points.front().data(), points.size_bytes());
     return array;
 }
 

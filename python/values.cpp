@@ -35,13 +35,13 @@ scenario::Value convert(const py::handle& object, const std::string& name, int d
     if (py::isinstance<py::str>(object)) return make(text_from(object));
     if (py::isinstance<py::dict>(object)) {
         scenario::Table table;
+        const std::string prefix = name.empty() ? "" : name + ".";
         for (const auto& [key, entry] : py::reinterpret_borrow<py::dict>(object)) {
             if (!py::isinstance<py::str>(key))
                 throw py::type_error("'" + name + "' has a key that is no text");
             if (entry.is_none()) continue;
             const std::string word = text_from(key);
-            table.push_back(
-                {word, {}, convert(entry, name.empty() ? word : name + "." + word, depth + 1)});
+            table.push_back({word, {}, convert(entry, prefix + word, depth + 1)});
         }
         return make(std::move(table));
     }

@@ -71,7 +71,7 @@ class View {
         auto owner = std::make_unique<Export>(world_);
         const py::capsule base(owner.get(),
                                [](void* pointer) { delete static_cast<Export*>(pointer); });
-        owner.release();
+        static_cast<void>(owner.release());
         return frozen(py::array_t<double>({static_cast<py::ssize_t>(values.size()), py::ssize_t{3}},
                                           values.empty() ? nullptr : values.front().data(), base));
     }

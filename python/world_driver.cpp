@@ -28,7 +28,7 @@ std::string at_step(const scenario::Scenario& scenario, std::uint64_t step, doub
 
 }  // namespace
 
-WorldDriver::WorldDriver(scenario::Scenario scenario, bool is_endless)
+WorldDriver::WorldDriver(const scenario::Scenario& scenario, bool is_endless)
     : WorldDriver(scenario, scenario::build_body(scenario), is_endless) {}
 
 WorldDriver::WorldDriver(scenario::Scenario scenario, scenario::Body body, bool is_endless)

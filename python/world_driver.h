@@ -57,7 +57,7 @@ class WorldDriver {
   public:
     /// Builds the world of a scenario at time 0. Throws as runner::Simulation.
     /// @param is_endless  the end time of the scenario means nothing
-    WorldDriver(scenario::Scenario scenario, bool is_endless);
+    WorldDriver(const scenario::Scenario& scenario, bool is_endless);
 
     sim::World& world() { return world_; }
     const sim::World& world() const { return world_; }

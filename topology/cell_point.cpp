@@ -17,7 +17,7 @@ using Weights = std::array<double, max_corners>;
 std::optional<Eigen::Vector4d> weights_near(const std::array<Vec3, 4>& corners, const Vec3& x) {
     Eigen::Matrix3d edges;
     for (int k = 0; k < 3; ++k)
-        edges.col(k) = corners[static_cast<std::size_t>(k + 1)] - corners[0];
+        edges.col(k) = corners[static_cast<std::size_t>(k) + 1] - corners[0];
     if (edges.determinant() == 0.0) return std::nullopt;
     Eigen::Vector4d weights;
     weights.tail<3>() = edges.inverse() * (x - corners[0]);

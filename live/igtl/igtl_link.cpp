@@ -78,7 +78,7 @@ std::optional<std::string> content_of(std::uint64_t version, const std::string& 
 /// then the position. Returns nothing if it is no rigid motion.
 std::optional<Pose> pose_of(const std::string& content) {
     const auto number = [&](int i) {
-        const auto bits = big_endian(content.substr(static_cast<std::size_t>(4 * i), 4));
+        const auto bits = big_endian(content.substr(4 * static_cast<std::size_t>(i), 4));
         return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
     };
     Eigen::Matrix3d rotation;

@@ -206,8 +206,8 @@ void SparseFactor::solve(Eigen::VectorXd& side) const {
         const double* from = part.data() + front.num_own();
         for (const std::int32_t row : later_rows(front)) side[row] = *from++;
     }
-    for (auto it = fronts_.rbegin(); it != fronts_.rend(); ++it) {  // L^T x = y
-        const Front& front = *it;
+    for (std::size_t f = fronts_.size(); f-- > 0;) {  // L^T x = y
+        const Front& front = fronts_[f];
         gather(front);
         for (std::size_t j = front.num_own(); j-- > 0;) {
             const double* const column = values_.data() + front.values + j * front.size();
