@@ -10,8 +10,8 @@
 
 namespace incise::app {
 
+using fragments::FragmentMesh;
 using topology::CellKind;
-using topology::FragmentMesh;
 using topology::Mesh;
 
 namespace {
@@ -67,7 +67,7 @@ FragmentCounts counts_of(const Mesh& mesh, const FragmentMesh& fragments) {
         counts.smallest_share = std::min(counts.smallest_share, fragments.share(e));
     std::vector<bool> has_material(fragments.node_capacity(), false);
     for (const VertexId n : mesh.nodes())
-        if (const topology::Embedding at = fragments.embedding(mesh, n); at.count == 1)
+        if (const fragments::EmbeddedPoint at = fragments.embedded(mesh, n); at.count == 1)
             has_material[at.nodes[0].index()] = true;
     for (const NodeId n : fragments.nodes()) counts.ghost_nodes += has_material[n.index()] ? 0 : 1;
     return counts;

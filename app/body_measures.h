@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "incise/base/types.h"
-#include "incise/topology/fragment_mesh.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::app {
@@ -18,7 +18,7 @@ struct Piece {
     std::size_t elements = 0;
 };
 
-/// Counts of the elements of the physics: topology::FragmentMesh.
+/// Counts of the elements of the physics: fragments::FragmentMesh.
 struct FragmentCounts {
     std::size_t fragments = 0;
     std::size_t ghost_nodes = 0;  ///< nodes of fragments without material at them
@@ -39,13 +39,13 @@ struct BodyMeasures : FragmentCounts {
 
 /// Returns the counts of the fragments of a mesh. Cost: O(n).
 /// @param fragments  of the mesh, at its epoch
-FragmentCounts counts_of(const topology::Mesh& mesh, const topology::FragmentMesh& fragments);
+FragmentCounts counts_of(const topology::Mesh& mesh, const fragments::FragmentMesh& fragments);
 
 /// Returns the measures of a body at rest.
 /// Throws InputError for a body whose quality cannot be measured: see topology::measure().
 /// @param fragments  of the mesh, at its epoch
 /// Cost: O(n), some microseconds for each element.
-BodyMeasures measures_of(const topology::Mesh& mesh, const topology::FragmentMesh& fragments);
+BodyMeasures measures_of(const topology::Mesh& mesh, const fragments::FragmentMesh& fragments);
 
 /// Returns the connected components of a body, the largest volume first. Cost: O(n).
 std::vector<Piece> pieces_of(const topology::Mesh& mesh);

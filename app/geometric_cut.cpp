@@ -16,15 +16,15 @@
 #include "incise/cutting/surfaces/plane.h"
 #include "incise/cutting/surfaces/triangle_surface.h"
 #include "incise/cutting/tools/separator.h"
-#include "incise/topology/carriers.h"
-#include "incise/topology/fragment_mesh.h"
+#include "incise/fragments/carriers.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/topology/geometry.h"
 
 namespace incise::app {
 
 using cutting::TissueMotion;
+using fragments::FragmentMesh;
 using topology::CellKind;
-using topology::FragmentMesh;
 using topology::Mesh;
 
 namespace {
@@ -447,7 +447,7 @@ GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
     }
     report.after = measures_after(mesh, cutter.fragments());
     report.pieces = pieces_of(mesh);
-    report.carriers = topology::carriers_of(mesh, cutter.fragments());
+    report.carriers = fragments::carriers_of(mesh, cutter.fragments());
     return report;
 }
 

@@ -93,7 +93,7 @@ struct GeometricCutReport {
     std::vector<Piece> pieces;  ///< largest volume first
     CutCounts total;
     std::vector<ToolReport> tools;
-    topology::Carriers carriers;        ///< of the mesh after the cuts, as topology::carriers_of()
+    topology::Carriers carriers;        ///< of the mesh after the cuts, as fragments::carriers_of()
     std::vector<std::string> warnings;  ///< one sentence for each tool that cut nothing
 
     /// Returns |volume after + volume removed - volume before| / volume before.

@@ -46,7 +46,7 @@ MeshInfo look_at(const InfoOptions& options) {
         info.num_components = topology::components(built.mesh).count;
         info.metrics = topology::measure(file.mesh);
         if (!file.mesh.carriers.is_empty())
-            info.fragments = counts_of(built.mesh, topology::FragmentMesh(built.mesh));
+            info.fragments = counts_of(built.mesh, fragments::FragmentMesh(built.mesh));
     } catch (const InputError& error) {
         throw InputError(prefixed(options.mesh.string() + ": ", error.what()));
     }

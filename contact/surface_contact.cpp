@@ -45,9 +45,8 @@ constexpr double rounding = 1e-10;
 }  // namespace
 
 void add_shares(const physics::Model& model, VertexId n, double weight, ContactSolver& solver) {
-    const topology::Embedding& at = model.embedded_nodes()[n];
-    for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
-        solver.add_share(at.nodes[k], weight * at.weights[k]);
+    model.embedding()[n].for_each(
+        [&](NodeId node, double share) { solver.add_share(node, weight * share); });
 }
 
 void add_surface_shares(const physics::Model& model, const ContactSolver::OnSurface& at,
@@ -150,7 +149,7 @@ void SurfaceContact::list_triangles(const physics::Model& model,
 void SurfaceContact::list_lengths(const physics::Model& model) {
     lengths_.assign(model.mesh().node_capacity(), size_);
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        const topology::FragmentMesh& fragments = model.fragments();
+        const fragments::FragmentMesh& fragments = model.fragments();
         const auto corners = fragments.corners(fragments.fragment_of_cell(faces_[t].cell));
         double sum = 0.0, count = 0.0;
         for (std::size_t i = 0; i < corners.size(); ++i)

@@ -64,12 +64,9 @@ void SutureContact::add_points(const physics::Model& model, const TissueSurface&
     first_segment_ = solver.size();
     solver.begin_thread({length_, suture_.stiffness, suture_.max_force, tension_ * dt});
     const auto add_end = [&](const topology::CellPoint& at, double sign) {
-        const auto corners = model.mesh().corners(at.cell);
-        for (std::size_t k = 0; k < corners.size(); ++k) {
-            const topology::Embedding& node = model.embedded_nodes()[corners[k]];
-            for (std::size_t j = 0; j < static_cast<std::size_t>(node.count); ++j)
-                solver.add_share(node.nodes[j], sign * at.weights[k] * node.weights[j]);
-        }
+        model.embedding().for_each(model.mesh(), at, [&](NodeId node, double weight) {
+            solver.add_share(node, sign * weight);
+        });
     };
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         solver.begin_segment(points[i + 1] - points[i], stitches_[i].force * dt);

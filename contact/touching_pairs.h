@@ -12,7 +12,7 @@
 
 #include "incise/base/types.h"
 #include "incise/contact/surface_tree.h"
-#include "incise/topology/fragment_mesh.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::contact {
@@ -26,7 +26,7 @@ using NodeAndTriangle = std::pair<VertexId, std::uint32_t>;
 /// The body that the surface belongs to.
 struct ContactBody {
     const topology::Mesh& mesh;
-    const topology::FragmentMesh& fragments;
+    const fragments::FragmentMesh& fragments;
     std::span<const FaceId> faces;             ///< of the mesh, by triangle
     std::span<const std::uint8_t> takes_part;  ///< by triangle, 1: it may touch others
 };

@@ -122,7 +122,7 @@ Split Cutter::split(CutId id, Mesh& mesh, const std::vector<Vec3>& edge_before,
     return done;
 }
 
-Split Cutter::end_cut(CutId id, Mesh& mesh, const topology::FragmentMesh& fragments,
+Split Cutter::end_cut(CutId id, Mesh& mesh, const fragments::FragmentMesh& fragments,
                       const BladeEnd& blade) {
     Cut& cut = cut_of(id);
     auto resting = suspended_cuts(id.index);

@@ -75,7 +75,7 @@ class Cutter {
     /// cut again.
     /// @param fragments  of the mesh
     /// Throws InputError for an unknown cut. Cost: see cutting::finish.
-    Split end_cut(CutId cut, topology::Mesh& mesh, const topology::FragmentMesh& fragments,
+    Split end_cut(CutId cut, topology::Mesh& mesh, const fragments::FragmentMesh& fragments,
                   const BladeEnd& blade);
     /// Removes a cut. Its number may be given to a later cut. Throws InputError for an unknown cut.
     void remove_cut(CutId cut) { cut_of(cut) = {}; }

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "incise/fragments/carriers.h"
 #include "incise/physics/body/body_arrays.h"
-#include "incise/topology/carriers.h"
 
 namespace incise::runner {
 
@@ -52,7 +52,7 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
     std::vector<VertexId> nodes;
     const auto positions = model.mesh_positions();
     frame_.mesh = topology::to_mesh_data(mesh, positions, &nodes, &cells_);
-    frame_.mesh.carriers = topology::carriers_of(mesh, model.fragments());
+    frame_.mesh.carriers = fragments::carriers_of(mesh, model.fragments());
     frame_.mesh.cut_faces.resize(cells_.size());  // all frames of a run have the same arrays
     frame_.time = time;
 
@@ -88,7 +88,7 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
     auto& cells = frame_.cell_fields;
     cells.push_back(
         field<std::int64_t>("element_id", 1, cells_, [&](CellId e) { return mesh.label(e); }));
-    const topology::FragmentMesh& fragments = model.fragments();
+    const fragments::FragmentMesh& fragments = model.fragments();
     if (const auto fibres = model.fibres(); !fibres.empty())
         cells.push_back(field<double>("fibre", 3, cells_, [&](CellId e) {
             return fibres[fragments.fragment_of_cell(e).index()];

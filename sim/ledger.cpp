@@ -78,7 +78,7 @@ BodyTotals Ledger::body_totals() const {
 }
 
 EditRecord Ledger::record(double time, std::uint64_t step, const std::string& tool,
-                          const cutting::Split& done, const topology::FragmentChanges& fragments,
+                          const cutting::Split& done, const fragments::FragmentChanges& fragments,
                           const BodyTotals& before, double mass_removed) {
     const topology::ChangeSet& changes = done.changes;
     const Divided divided = divided_elements(model_.mesh(), changes);
@@ -101,7 +101,7 @@ EditRecord Ledger::record(double time, std::uint64_t step, const std::string& to
     edit.mass_removed = mass_removed;
     edit.fragments_copied = fragments.mesh.elements_added.size();
     edit.fragment_nodes_copied = fragments.mesh.nodes_added.size();
-    for (const topology::CarriedCell& cell : fragments.cells) {
+    for (const fragments::CarriedCell& cell : fragments.cells) {
         if (!cell.to.is_valid()) continue;  // removed
         const double volume = topology::rest_volume(model_.mesh(), cell.cell);
         if (cell.is_joined) edit.volume_joined += volume;

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "incise/cutting/exact/splitter.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/physics/body/model.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/component_count.h"
-#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::sim {
@@ -47,7 +47,7 @@ struct EditRecord {
     std::size_t nodes_snapped = 0;  ///< nodes near the cut that were treated as on it
     double cut_area = 0.0;          ///< m2, at rest, of one side of the opened faces
     double mass_removed = 0.0;      ///< kg: density times rest volume of the removed elements
-    /// What the edit did to the elements and nodes of the physics (topology::FragmentMesh). Copies
+    /// What the edit did to the elements and nodes of the physics (fragments::FragmentMesh). Copies
     /// change neither momenta nor energies. If volume_joined and volume_released are 0, then
     /// `before` and `after` of an edit that removes nothing are equal to rounding.
     std::size_t fragments_copied = 0;       ///< new fragments
@@ -84,7 +84,7 @@ class Ledger {
     /// @param mass_removed  see removed_mass(), kg
     /// @pre  the model has followed the edit
     EditRecord record(double time, std::uint64_t step, const std::string& tool,
-                      const cutting::Split& done, const topology::FragmentChanges& fragments,
+                      const cutting::Split& done, const fragments::FragmentChanges& fragments,
                       const BodyTotals& before, double mass_removed);
 
     std::size_t num_edits() const { return num_edits_; }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "incise/base/types.h"
@@ -96,15 +97,9 @@ struct MeshChanges {
     }
 };
 
-// Records of the material.
 using VertexRecord = NodeRecordOf<VertexId>;
 using CellRecord = ElementRecordOf<VertexId, CellId>;
 using CellRewiring = RewiringOf<VertexId, CellId>;
-// Records of the physics.
-using NodeRecord = NodeRecordOf<NodeId>;
-using ElementRecord = ElementRecordOf<NodeId, ElementId>;
-using Rewiring = RewiringOf<NodeId, ElementId>;
-using FragmentMeshChanges = MeshChanges<NodeId, ElementId>;
 
 /// A change of Mesh::was_inside() at the faces of a cell: bit f for face f. From 0 for a cell
 /// that the edit added.
@@ -137,8 +132,18 @@ struct ChangeSet : MeshChanges<VertexId, CellId> {
     }
 };
 
+/// Swaps before and after.
+template <class Node, class Element>
+void invert(MeshChanges<Node, Element>& changes) {
+    std::swap(changes.epoch_before, changes.epoch_after);
+    std::swap(changes.node_capacity_before, changes.node_capacity_after);
+    std::swap(changes.element_capacity_before, changes.element_capacity_after);
+    std::swap(changes.nodes_added, changes.nodes_removed);
+    std::swap(changes.elements_added, changes.elements_removed);
+    for (auto& rewiring : changes.rewired) std::swap(rewiring.from, rewiring.to);
+}
+
 /// Returns the edit that undoes `changes`.
 ChangeSet inverse(const ChangeSet& changes);
-FragmentMeshChanges inverse(const FragmentMeshChanges& changes);
 
 }  // namespace incise::topology

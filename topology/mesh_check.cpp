@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "incise/topology/carriers.h"
+#include "incise/topology/carrier_check.h"
 #include "incise/topology/flat_cell.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh_repair.h"

@@ -176,7 +176,7 @@ BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const 
     return {blade.edge(), std::vector<Vec3>(blade.edge().size(), from_cut / count)};
 }
 
-double exit_distance(const TissueMotion& tissue, const topology::FragmentMesh& fragments,
+double exit_distance(const TissueMotion& tissue, const fragments::FragmentMesh& fragments,
                      const BladeEnd& blade) {
     const Mesh& mesh = tissue.mesh;
     const auto carrier_of = [&](CellId e) { return fragments.carrier_of_cell(e); };

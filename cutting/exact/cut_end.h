@@ -14,7 +14,7 @@
 #include "incise/cutting/exact/edge_intersections.h"
 #include "incise/cutting/exact/edge_list.h"
 #include "incise/cutting/exact/surface_boundary.h"
-#include "incise/topology/fragment_mesh.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_edit.h"
 
@@ -32,7 +32,7 @@ class CutEnd {
   public:
     /// @param mesh       during the edit
     /// @param fragments  before the edit
-    CutEnd(const topology::Mesh& mesh, const topology::FragmentMesh& fragments,
+    CutEnd(const topology::Mesh& mesh, const fragments::FragmentMesh& fragments,
            const BladeEnd& blade, PositionOf position)
         : mesh_(mesh), fragments_(fragments), blade_(blade), position_(std::move(position)) {}
 
@@ -73,7 +73,7 @@ class CutEnd {
     double distance_ahead(VertexId n) const { return blade_.distance_ahead(position_(n)); }
 
     const topology::Mesh& mesh_;
-    const topology::FragmentMesh& fragments_;
+    const fragments::FragmentMesh& fragments_;
     const BladeEnd& blade_;
     PositionOf position_;
     std::unordered_map<CellId, CarrierId> new_carriers_;  // of elements that the edit has made
@@ -88,7 +88,7 @@ BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const 
 /// Returns how far the edge must go on to be past all carriers that it is in, m. Returns 0 if it is
 /// in none. Only tetrahedra count. An edge in the face between two elements counts as in one of
 /// them (space_time.h).
-double exit_distance(const TissueMotion& tissue, const topology::FragmentMesh& fragments,
+double exit_distance(const TissueMotion& tissue, const fragments::FragmentMesh& fragments,
                      const BladeEnd& blade);
 
 }  // namespace incise::cutting

@@ -61,7 +61,7 @@ const EdgeIntersection& first_of(const EdgeIntersections& intersections) {
 /// Where the path of a blade ends, and the fragments of the body before that.
 struct PathEnd {
     const BladeEnd& blade;
-    const topology::FragmentMesh& fragments;
+    const fragments::FragmentMesh& fragments;
 };
 
 /// Makes the edit of one step of a cut: see split() and finish(). Used once.
@@ -547,7 +547,7 @@ Split split(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface, C
     return Splitter(mesh, tissue, surface, front, options, snap_history, resting).run();
 }
 
-Split finish(Mesh& mesh, const topology::FragmentMesh& fragments, const TissueMotion& tissue,
+Split finish(Mesh& mesh, const fragments::FragmentMesh& fragments, const TissueMotion& tissue,
              const BladeEnd& blade, CutFront& front, const SplitOptions& options,
              SnapHistory& snap_history, std::span<SuspendedCut> resting) {
     if (front.is_empty()) return {};

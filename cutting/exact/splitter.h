@@ -11,8 +11,8 @@
 #include "incise/cutting/exact/suspended_cut.h"
 #include "incise/cutting/surfaces/cut_surface.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/topology/change_set.h"
-#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::cutting {
@@ -73,7 +73,7 @@ Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& 
 /// Ends the cut of a blade at its edge, where its path ends. Carriers that the edge is in are
 /// divided along the continuation of the path. Faces on the cut are divided at the edge, with the
 /// same tolerance, and those behind the edge open. A carrier that the blade has cut by half or more
-/// opens whole, since one that is cut in part moves as if it were whole (topology::FragmentMesh).
+/// opens whole, since one that is cut in part moves as if it were whole (fragments::FragmentMesh).
 /// So the cut ends up to half an element before or behind the edge, and on average at it. The front
 /// is empty afterwards.
 ///
@@ -81,7 +81,7 @@ Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& 
 /// continuation comes to an element that is no tetrahedron, no element is divided along it.
 /// @param fragments  of the mesh
 /// @pre  the tissue is at rest: before and after are the same
-Split finish(topology::Mesh& mesh, const topology::FragmentMesh& fragments,
+Split finish(topology::Mesh& mesh, const fragments::FragmentMesh& fragments,
              const TissueMotion& tissue, const BladeEnd& blade, CutFront& front,
              const SplitOptions& options, SnapHistory& snap_history,
              std::span<SuspendedCut> resting = {});

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "incise/topology/fragment_mesh.h"
+#include "incise/fragments/fragment_mesh.h"
 
 namespace incise::live {
 

@@ -6,7 +6,7 @@
 namespace incise::physics {
 
 BodyArrays body_arrays(const Model& model) {
-    const topology::FragmentMesh& fragments = model.fragments();
+    const fragments::FragmentMesh& fragments = model.fragments();
     BodyArrays arrays;
     std::vector<std::int64_t> row_of_node(fragments.node_capacity(), -1);
     for (const NodeId n : fragments.nodes()) {

@@ -12,7 +12,7 @@ namespace incise::physics {
 
 class Model;
 
-/// The nodes and elements of the physics: topology::FragmentMesh. The sums of m v and m v^2 / 2
+/// The nodes and elements of the physics: fragments::FragmentMesh. The sums of m v and m v^2 / 2
 /// over these nodes are the momentum and the kinetic energy of the body. The nodes of the mesh that
 /// is cut do not give them: they follow these nodes, and their masses say where material is.
 struct BodyArrays {

@@ -38,7 +38,7 @@ bool prescribe_alike(const Constraint& a, const Constraint& b, std::size_t c) {
 
 }  // namespace
 
-Vec3 Constraint::target(const topology::FragmentMesh& fragments, NodeId n, double time) const {
+Vec3 Constraint::target(const fragments::FragmentMesh& fragments, NodeId n, double time) const {
     if (!grip.is_empty()) return grip.at(time).to_world(gripped.at(n));
     const Vec3& X = fragments.rest_position(n);
     Vec3 x = X;
@@ -212,7 +212,7 @@ void Constraints::begin_grasps(NodeId n, std::span<const Vec3> positions) {
 }
 
 void Constraints::prescribe(const std::array<int, 3>& constraint_of,
-                            const topology::FragmentMesh& fragments, NodeId n, double time,
+                            const fragments::FragmentMesh& fragments, NodeId n, double time,
                             Vec3& x) const {
     int last = -1;
     Vec3 target = Vec3::Zero();
@@ -227,13 +227,13 @@ void Constraints::prescribe(const std::array<int, 3>& constraint_of,
 }
 
 void Constraints::apply(const Body& body, const topology::ChangeSet& of_mesh,
-                        const topology::FragmentMeshChanges& of_fragments,
+                        const fragments::FragmentMeshChanges& of_fragments,
                         std::span<const NodeId> touched, std::span<const Vec3> positions) {
     for (Constraint& constraint : constraints_) {
         constraint.nodes.apply(body.mesh, of_mesh);
         auto& gripped = constraint.gripped;
         gripped.erase(gripped.lower_bound(NodeId(of_fragments.node_capacity_after)), gripped.end());
-        for (const topology::NodeRecord& record : of_fragments.nodes_added) {
+        for (const fragments::NodeRecord& record : of_fragments.nodes_added) {
             const auto source = gripped.find(record.sources[0].node);
             if (record.num_sources == 1 && source != gripped.end())
                 gripped.try_emplace(record.id, source->second);

@@ -11,9 +11,9 @@
 
 #include "incise/base/error.h"
 #include "incise/base/types.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/physics/body/time_curve.h"
 #include "incise/physics/body/vertex_set.h"
-#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/pose.h"
 
@@ -41,7 +41,7 @@ struct Constraint {
     /// Returns the prescribed position of a node of the fragments at `time`, s. Only the components
     /// that the constraint prescribes are meaningful.
     /// @pre  the constraint prescribes the node
-    Vec3 target(const topology::FragmentMesh& fragments, NodeId n, double time) const;
+    Vec3 target(const fragments::FragmentMesh& fragments, NodeId n, double time) const;
 
     /// Throws InputError if a member is no node of the mesh, or if a pose of the grasp is unsound.
     void require_fit(const topology::Mesh& mesh) const;
@@ -98,7 +98,7 @@ class Constraints {
     /// The mesh and its fragments, both after the edit that is followed.
     struct Body {
         const topology::Mesh& mesh;
-        const topology::FragmentMesh& fragments;
+        const fragments::FragmentMesh& fragments;
     };
 
     /// Throws InputError, naming node and constraints, if two constraints prescribe different
@@ -126,8 +126,8 @@ class Constraints {
     /// @param n              the node of the fragments
     /// @param time           s
     /// @param x              position, m; free components stay as they are
-    void prescribe(const std::array<int, 3>& constraint_of, const topology::FragmentMesh& fragments,
-                   NodeId n, double time, Vec3& x) const;
+    void prescribe(const std::array<int, 3>& constraint_of,
+                   const fragments::FragmentMesh& fragments, NodeId n, double time, Vec3& x) const;
 
     /// Appends a constraint; see Model::add_constraint.
     void add(const Body& body, Constraint constraint, std::span<const Vec3> positions);
@@ -143,7 +143,7 @@ class Constraints {
     /// @param positions     current, m, by node of the fragments
     /// Cost: proportional to the touched nodes; for the undo of an edit as for a new object.
     void apply(const Body& body, const topology::ChangeSet& of_mesh,
-               const topology::FragmentMeshChanges& of_fragments, std::span<const NodeId> touched,
+               const fragments::FragmentMeshChanges& of_fragments, std::span<const NodeId> touched,
                std::span<const Vec3> positions);
 
   private:

@@ -4,11 +4,11 @@
 
 #include <span>
 
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/physics/elements/element_store.h"
 #include "incise/physics/elements/state.h"
 #include "incise/physics/elements/workers.h"
 #include "incise/topology/change_set.h"
-#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::physics {
@@ -20,7 +20,7 @@ namespace incise::physics {
 /// cut, both have the same ids.
 struct BodyView {
     const topology::Mesh& mesh;
-    const topology::FragmentMesh& fragments;
+    const fragments::FragmentMesh& fragments;
     const ElementStore& elements;
     std::span<const double> masses;  ///< lumped, kg, by node of the fragments
 
@@ -37,7 +37,7 @@ struct BodyView {
 /// An edit of a body: that of its mesh, and what it changed in the fragments.
 struct BodyEdit {
     const topology::ChangeSet& of_mesh;
-    const topology::FragmentMeshChanges& of_fragments;
+    const fragments::FragmentMeshChanges& of_fragments;
     /// In ascending order, the vertices of the mesh at cells that have changed.
     std::span<const VertexId> touched_of_mesh;
     /// In ascending order, the nodes of the fragments whose mass may have changed.

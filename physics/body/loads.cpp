@@ -23,7 +23,7 @@ PressedFace face_in_fragment(const BodyView& body, FaceId f) {
     PressedFace face;
     face.num_corners = static_cast<std::size_t>(body.mesh.face_size(f));
     for (std::size_t p = 0; p < face.num_corners; ++p)
-        face.corners[p] = body.fragments.embedding_in(
+        face.corners[p] = body.fragments.embedded(
             fragment, body.mesh.rest_position(body.mesh.face_corner(f, static_cast<int>(p))));
     return face;
 }
@@ -42,9 +42,8 @@ class ShareSums {
         shares_.push_back({static_cast<std::uint32_t>(n.index()), share});
     }
     /// Adds a share of a point of a fragment to the corners of this fragment.
-    void add(const topology::Embedding& at, double share) {
-        for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
-            add(at.nodes[k], at.weights[k] * share);
+    void add(const fragments::EmbeddedPoint& at, double share) {
+        at.for_each([&](NodeId n, double weight) { add(n, weight * share); });
     }
     /// Returns one sum for each node, in ascending order of nodes.
     std::vector<NodalContribution> sums() && {
@@ -75,7 +74,7 @@ struct ShareFinder {
         const auto& members = load.nodes.members();
         for (std::size_t i = 0; i < members.size(); ++i)
             if (load.shares[i] > 0.0)
-                shares.add(body.fragments.embedding(body.mesh, members[i].node), load.shares[i]);
+                shares.add(body.fragments.embedded(body.mesh, members[i].node), load.shares[i]);
         return std::move(shares).sums();
     }
     std::vector<NodalContribution> operator()(const TractionLoad& load) const {
@@ -132,12 +131,11 @@ std::vector<PressedFace> pressed_faces(const FaceSet& faces, const BodyView& bod
 std::vector<PressedNode> pressed_nodes(std::span<const PressedFace> faces) {
     std::vector<PressedNode> pressed;
     for (std::size_t f = 0; f < faces.size(); ++f)
-        for (std::size_t p = 0; p < faces[f].num_corners; ++p) {
-            const topology::Embedding& corner = faces[f].corners[p];
-            for (std::size_t k = 0; k < static_cast<std::size_t>(corner.count); ++k)
-                pressed.push_back({static_cast<std::uint32_t>(corner.nodes[k].index()),
-                                   static_cast<std::uint32_t>(f), corner.weights[k]});
-        }
+        for (std::size_t p = 0; p < faces[f].num_corners; ++p)
+            faces[f].corners[p].for_each([&](NodeId n, double weight) {
+                pressed.push_back(
+                    {static_cast<std::uint32_t>(n.index()), static_cast<std::uint32_t>(f), weight});
+            });
     std::stable_sort(pressed.begin(), pressed.end(),
                      [](const PressedNode& a, const PressedNode& b) { return a.node < b.node; });
     return pressed;
@@ -183,15 +181,15 @@ void visit_tangent(const PressedFace& face, double pressure, std::span<const Vec
     std::size_t num_nodes = 0;
     FaceTangent weights = FaceTangent::Zero(most_rows, most_rows);  // of corner p, in column 3 p
     for (std::size_t p = 0; p < face.num_corners; ++p)
-        for (std::size_t k = 0; k < static_cast<std::size_t>(face.corners[p].count); ++k) {
-            const auto node = static_cast<std::uint32_t>(face.corners[p].nodes[k].index());
+        face.corners[p].for_each([&](NodeId n, double weight) {
+            const auto node = static_cast<std::uint32_t>(n.index());
             const auto end = nodes.begin() + static_cast<std::ptrdiff_t>(num_nodes);
             const auto it = std::find(nodes.begin(), end, node);
             if (it == end) nodes[num_nodes++] = node;
             for (int c = 0; c < 3; ++c)
                 weights(3 * (it - nodes.begin()) + c, static_cast<Eigen::Index>(3 * p) + c) =
-                    face.corners[p].weights[k];
-        }
+                    weight;
+        });
     const FaceTangent W = weights.topLeftCorner(static_cast<Eigen::Index>(3 * num_nodes),
                                                 static_cast<Eigen::Index>(3 * face.num_corners));
     const FaceTangent K =
@@ -250,12 +248,7 @@ void Load::require_fit(const topology::Mesh& mesh) const {
 }
 
 Vec3 PressedFace::corner(std::size_t p, std::span<const Vec3> positions) const {
-    const topology::Embedding& at = corners[p];
-    if (at.count == 1) return positions[at.nodes[0].index()];
-    Vec3 x = Vec3::Zero();
-    for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
-        x += at.weights[k] * positions[at.nodes[k].index()];
-    return x;
+    return corners[p].value(positions);
 }
 
 Vec3 PressedFace::area_vector(std::span<const Vec3> positions) const {

@@ -72,7 +72,7 @@ struct NodalContribution {
 /// the corners of one fragment.
 struct PressedFace {
     std::size_t num_corners = 0;  ///< 3 or 4
-    std::array<topology::Embedding, 4> corners = {};
+    std::array<fragments::EmbeddedPoint, 4> corners = {};
 
     Vec3 corner(std::size_t p, std::span<const Vec3> positions) const;
     /// Returns the outward area vector, m2; for a quadrilateral that of its bilinear patch.

@@ -7,12 +7,12 @@
 #include <map>
 
 #include "incise/base/error.h"
+#include "incise/fragments/fragment_archive.h"
 #include "incise/physics/body/motion_failure.h"
-#include "incise/topology/fragment_archive.h"
 
 namespace incise::physics {
 
-using topology::FragmentMesh;
+using fragments::FragmentMesh;
 
 namespace {
 
@@ -61,7 +61,7 @@ Model::Model(const topology::Mesh& mesh, Parts parts, BoundaryConditions boundar
 
 Model::Parts::Parts(const topology::Mesh& mesh, const MaterialTable& of_mesh,
                     std::span<const Constraint> constraints)
-    : fragments(mesh, topology::default_light_share, held_by(mesh, constraints)), table(of_mesh) {
+    : fragments(mesh, fragments::default_light_share, held_by(mesh, constraints)), table(of_mesh) {
     if (table.fibres.empty()) return;
     table.fibres.resize(fragments.element_capacity(), Vec3::Zero());
     for (const ElementId e : fragments.elements())
@@ -78,7 +78,7 @@ Model::Model(const topology::Mesh& mesh, FragmentMesh fragments, const MaterialT
       fragments_(std::move(fragments)),
       elements_(fragments_, mesh, table),
       state_(fragments_, elements_.history_size()),
-      embedded_(mesh, fragments_),
+      embedding_(mesh, fragments_),
       damping_(boundary_conditions.damping),
       body_size_(diagonal(mesh)),
       masses_(fragments_.node_capacity(), 0.0),
@@ -224,7 +224,7 @@ void Model::take_force_terms(Model& former, double time) {
 
 void Model::save(ArchiveWriter& ar) const {
     const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
-    topology::save(fragments_, ar);
+    fragments::save(fragments_, ar);
     ar(copy(fibres()), loads_.gravity(), damping_, copy(constraints_.all()), copy(loads_.all()));
     state_.save(ar);
     ar(reactions_, external_work_, dissipated_energy_, largest_move_, body_size_,
@@ -233,7 +233,7 @@ void Model::save(ArchiveWriter& ar) const {
 
 Model::Model(const topology::Mesh& mesh, MaterialTable table, ArchiveReader& ar, double time)
     // Braces guarantee that the arguments read the archive from left to right.
-    : Model{mesh, topology::load_fragments(mesh, ar), read_fibres(std::move(table), ar),
+    : Model{mesh, fragments::load_fragments(mesh, ar), read_fibres(std::move(table), ar),
             read_boundary_conditions(mesh, ar)} {
     const bool has_fibres =
         std::ranges::any_of(elements_.materials().materials, &Material::has_fibres);
@@ -310,12 +310,10 @@ std::vector<Vec3> Model::mesh_elastic_forces() const {
     const std::vector<double> masses = mesh_masses();
     std::vector<Vec3> forces(masses.size(), Vec3::Zero());
     for (const VertexId n : mesh_.nodes()) {
-        const topology::Embedding& at = embedded_[n];
-        for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k) {
-            const std::size_t node = at.nodes[k].index();
+        embedding_[n].for_each([&](NodeId node, double weight) {
             forces[n.index()] +=
-                masses[n.index()] * at.weights[k] / masses_[node] * elastic_forces_[node];
-        }
+                masses[n.index()] * weight / masses_[node.index()] * elastic_forces_[node.index()];
+        });
     }
     return forces;
 }

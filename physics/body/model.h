@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "incise/base/archive.h"
+#include "incise/fragments/embedding.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/physics/body/constraints.h"
-#include "incise/physics/body/embedded_nodes.h"
 #include "incise/physics/body/force_term.h"
 #include "incise/physics/body/loads.h"
 #include "incise/physics/body/momentum.h"
@@ -23,7 +24,6 @@
 #include "incise/physics/elements/state.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/follower.h"
-#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::physics {
@@ -69,7 +69,7 @@ struct Reaction {
 
 /// The record of what an edit did to a model, with which undo() takes it back.
 struct ModelChanges {
-    topology::FragmentChanges fragments;
+    fragments::FragmentChanges fragments;
     /// The velocity of a node that keeps the momenta after light fragments joined others.
     struct Velocity {
         NodeId node;
@@ -83,9 +83,9 @@ struct ModelChanges {
 
 /// A body with lumped masses at nodes, and elastic elements between them.
 ///
-/// The mesh is the material. The elements are its fragments (topology::FragmentMesh): a cut divides
-/// the material exactly, and the fragments of an element move as the whole would. Without cuts,
-/// elements and nodes are those of the mesh, with the same ids.
+/// The mesh is the material. The elements are its fragments (fragments::FragmentMesh): a cut
+/// divides the material exactly, and the fragments of an element move as the whole would. Without
+/// cuts, elements and nodes are those of the mesh, with the same ids.
 ///
 /// All arrays are indexed by node of the fragments, unless they are said to be by node of the mesh.
 /// Dead nodes have no mass. They keep their last positions and velocities, so that an edit can be
@@ -102,7 +102,7 @@ class Model {
           const BoundaryConditions& boundary_conditions = {});
     /// Builds the same of a body that was cut.
     /// @param fragments  of the mesh; the fibres of the table are by id of fragments
-    Model(const topology::Mesh& mesh, topology::FragmentMesh fragments, const MaterialTable& table,
+    Model(const topology::Mesh& mesh, fragments::FragmentMesh fragments, const MaterialTable& table,
           BoundaryConditions boundary_conditions = {});
 
     /// Restores a model from the bytes that save() has written. The result equals the saved model
@@ -128,8 +128,12 @@ class Model {
     /// Returns the positions, m, and velocities, m/s, of the nodes of the mesh, by id.
     /// @thread One thread at a time.
     /// @lifetime Until the model is stepped or edited.
-    std::span<const Vec3> mesh_positions() const { return embedded_.positions(state_); }
-    std::span<const Vec3> mesh_velocities() const { return embedded_.velocities(state_); }
+    std::span<const Vec3> mesh_positions() const {
+        return embedding_.positions(state_.positions(), state_.version());
+    }
+    std::span<const Vec3> mesh_velocities() const {
+        return embedding_.velocities(state_.velocities(), state_.version());
+    }
     /// Returns the mass of the material at each node of the mesh, kg: a quarter of that of each
     /// tetrahedron, and an eighth of that of each hexahedron. Cost: O(n).
     std::vector<double> mesh_masses() const;
@@ -297,7 +301,7 @@ class Model {
     /// parts, it is the sum over the parts.
     double largest_move() const { return largest_move_; }
     /// Returns a bound on the distance that a node of the mesh moved in the last step, m.
-    double largest_mesh_move() const { return embedded_.largest_gain() * largest_move_; }
+    double largest_mesh_move() const { return embedding_.largest_gain() * largest_move_; }
 
     /// Returns the bound on explicit steps at rest, s; see StableStep. The bound ignores damping,
     /// which only increases the stable step.
@@ -372,8 +376,8 @@ class Model {
     }
 
     const topology::Mesh& mesh() const { return mesh_; }
-    const topology::FragmentMesh& fragments() const { return fragments_; }
-    const EmbeddedNodes& embedded_nodes() const { return embedded_; }
+    const fragments::FragmentMesh& fragments() const { return fragments_; }
+    const fragments::Embedding& embedding() const { return embedding_; }
 
   private:
     /// The fragments of a mesh, and the materials with the fibres by fragment: a fragment has those
@@ -381,7 +385,7 @@ class Model {
     struct Parts {
         Parts(const topology::Mesh& mesh, const MaterialTable& of_mesh,
               std::span<const Constraint> constraints);
-        topology::FragmentMesh fragments;
+        fragments::FragmentMesh fragments;
         MaterialTable table;
     };
     Model(const topology::Mesh& mesh, Parts parts, BoundaryConditions boundary_conditions);
@@ -432,20 +436,20 @@ class Model {
     void update_outer_terms();
     void resize(std::size_t num_nodes);
     void gather(NodeId n);
-    void follow(const BodyEdit& edit, const topology::FragmentChanges& changes);
-    void edit_elements(const BodyEdit& edit, const topology::FragmentChanges& changes);
+    void follow(const BodyEdit& edit, const fragments::FragmentChanges& changes);
+    void edit_elements(const BodyEdit& edit, const fragments::FragmentChanges& changes);
     Momenta momenta_of(std::span<const NodeId> nodes) const;
     Momenta momenta_of_removed(const topology::ChangeSet& changes) const;
     std::vector<ModelChanges::Velocity> change_momenta(std::span<const NodeId> nodes,
                                                        const Momenta& by);
 
     const topology::Mesh& mesh_;
-    topology::FragmentMesh fragments_;
+    fragments::FragmentMesh fragments_;
     std::uint64_t structure_version_ = 0;
     Workers workers_{1};
     ElementStore elements_;
     State state_;
-    EmbeddedNodes embedded_;
+    fragments::Embedding embedding_;
     double damping_;
     double body_size_;
 

@@ -9,10 +9,10 @@
 
 namespace incise::physics {
 
+using fragments::FragmentChanges;
+using fragments::FragmentMesh;
+using fragments::FragmentMeshChanges;
 using topology::ChangeSet;
-using topology::FragmentChanges;
-using topology::FragmentMesh;
-using topology::FragmentMeshChanges;
 using topology::MeshChanges;
 
 namespace {
@@ -62,7 +62,7 @@ std::vector<Node> touched_nodes(const Mesh& mesh, const MeshChanges<Node, Elemen
 std::vector<NodeId> touched_nodes(const FragmentMesh& fragments, const FragmentChanges& changes,
                                   const FragmentMeshChanges& of_fragments) {
     std::vector<NodeId> touched = touched_nodes(fragments, of_fragments);
-    for (const topology::ShareChange& change : changes.shares) {
+    for (const fragments::ShareChange& change : changes.shares) {
         const auto corners = fragments.corners(change.fragment);
         touched.insert(touched.end(), corners.begin(), corners.end());
     }
@@ -79,9 +79,9 @@ void Model::edit_elements(const BodyEdit& edit, const FragmentChanges& changes) 
         elements_.erase(record.id, record.region);
     for (const auto& record : of_fragments.elements_added) elements_.insert(fragments_, record.id);
     std::vector<ElementId> changed;
-    for (const topology::Rewiring& rewiring : of_fragments.rewired)
+    for (const fragments::ElementRewiring& rewiring : of_fragments.rewired)
         changed.push_back(rewiring.element);
-    for (const topology::ShareChange& change : changes.shares) changed.push_back(change.fragment);
+    for (const fragments::ShareChange& change : changes.shares) changed.push_back(change.fragment);
     make_sorted_set(changed);
     for (const ElementId e : changed) elements_.replace(fragments_, e);
 }
@@ -114,7 +114,8 @@ void Model::undo(const topology::Mesh& mesh, const ChangeSet& changes, const Mod
         for (const ModelChanges::Velocity& change : done.velocities)
             state_.set_velocity(change.node, change.before);
     const ChangeSet of_mesh = inverse(changes);
-    const FragmentMeshChanges of_fragments = inverse(done.fragments.mesh);
+    FragmentMeshChanges of_fragments = done.fragments.mesh;
+    invert(of_fragments);
     const auto touched_of_mesh = touched_nodes(mesh, of_mesh);
     const auto touched = touched_nodes(fragments_, done.fragments, of_fragments);
     follow({of_mesh, of_fragments, touched_of_mesh, touched}, done.fragments);
@@ -129,7 +130,7 @@ void Model::follow(const BodyEdit& edit, const FragmentChanges& changes) {
     resize(of_fragments.node_capacity_after);
     elements_.number_nodes(masses_.size());
     for (const NodeId n : edit.touched) gather(n);
-    embedded_.apply(mesh_, fragments_, edit, changes);
+    embedding_.apply(mesh_, fragments_, edit.touched_of_mesh, changes);
     constraints_.apply(bodies(), edit.of_mesh, of_fragments, edit.touched, positions());
     loads_.apply(view(), edit);
     for (const auto& term : added_terms_) term->apply(view(), edit);

@@ -18,7 +18,7 @@ std::pair<ElementId, double> most_crushed_before(const Model& model, NodeId n, d
     std::vector<Vec3> before(model.positions().begin(), model.positions().end());
     for (std::size_t i = 0; i < before.size(); ++i) before[i] -= dt * model.velocities()[i];
     std::vector<ElementId> star;
-    const topology::FragmentMesh& fragments = model.fragments();
+    const fragments::FragmentMesh& fragments = model.fragments();
     fragments.star(n, star);
     std::pair<ElementId, double> lowest{star.front(), std::numeric_limits<double>::infinity()};
     for (const ElementId e : star)
@@ -82,7 +82,7 @@ FailureCause find_cause(const Model& model, NodeId n, double dt, std::ostream& t
 MotionFailure failure_of_step(const Model& model, double time, double dt) {
     const auto [n, speed] = lost_node(model);
     const topology::Mesh& mesh = model.mesh();
-    const topology::FragmentMesh& fragments = model.fragments();
+    const fragments::FragmentMesh& fragments = model.fragments();
     const CellId cell = fragments.cells_of(fragments.incident_element(n)).front();
     const VertexId vertex = fragments.vertex_of_origin(mesh, n);
     std::ostringstream text;

@@ -34,7 +34,7 @@ struct ElementInput {
     std::span<const Vec3> rest_positions;  ///< m, by node id
     Vec3 fibre = Vec3::Zero();  ///< direction of the fibres at rest, of unit length; ignored by a
                                 ///< law without fibres
-    double share = 1.0;  ///< scales mass, stiffness and energy; see topology::FragmentMesh::share
+    double share = 1.0;  ///< scales mass, stiffness and energy; see fragments::FragmentMesh::share
 };
 
 /// A trial state at the end of a step of an implicit solver or of statics.

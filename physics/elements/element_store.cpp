@@ -13,8 +13,8 @@
 
 namespace incise::physics {
 
+using fragments::FragmentMesh;
 using topology::CellKind;
-using topology::FragmentMesh;
 
 namespace {
 

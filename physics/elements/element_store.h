@@ -13,6 +13,7 @@
 
 #include "incise/base/error.h"
 #include "incise/base/sum.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/physics/elements/element_block.h"
 #include "incise/physics/elements/precision.h"
 #include "incise/physics/elements/state.h"
@@ -20,7 +21,6 @@
 #include "incise/physics/laws/material.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/field.h"
-#include "incise/topology/fragment_mesh.h"
 
 namespace incise::physics {
 
@@ -68,19 +68,19 @@ class ElementStore {
     /// @param fragments  the elements
     /// @param mesh       the mesh that they are fragments of, for labels in messages
     /// @param table      the materials; its fibres are by id of fragments
-    ElementStore(const topology::FragmentMesh& fragments, const topology::Mesh& mesh,
+    ElementStore(const fragments::FragmentMesh& fragments, const topology::Mesh& mesh,
                  const MaterialTable& table);
 
     /// Follows an edit with the values by element id: parts of a divided element inherit its
     /// fibres. It must be called before insert(), replace() and erase() for this edit.
-    void apply(const topology::FragmentMesh& fragments,
-               const topology::FragmentMeshChanges& changes) {
+    void apply(const fragments::FragmentMesh& fragments,
+               const fragments::FragmentMeshChanges& changes) {
         if (fibres_) fibres_->apply(fragments, changes);
     }
 
-    void insert(const topology::FragmentMesh& fragments, ElementId e);
+    void insert(const fragments::FragmentMesh& fragments, ElementId e);
     /// Precomputes an element again whose corners or whose share have changed.
-    void replace(const topology::FragmentMesh& fragments, ElementId e);
+    void replace(const fragments::FragmentMesh& fragments, ElementId e);
     /// Erases an element. Its region is an argument.
     void erase(ElementId e, int region);
 
@@ -90,7 +90,7 @@ class ElementStore {
     void number_nodes(std::size_t num_nodes);
 
     /// Returns the block of an element.
-    const ElementBlock& block_of(const topology::FragmentMesh& fragments, ElementId e) const {
+    const ElementBlock& block_of(const fragments::FragmentMesh& fragments, ElementId e) const {
         return *blocks_[block_index(e, fragments.region(e))];
     }
 
@@ -203,9 +203,9 @@ class ElementStore {
     ElementBlock& editable(std::size_t block);
 
     std::size_t block_index(ElementId e, int region) const;
-    void require_law(const topology::FragmentMesh& fragments, const topology::Mesh& mesh,
+    void require_law(const fragments::FragmentMesh& fragments, const topology::Mesh& mesh,
                      ElementId e) const;
-    ElementInput input_of(const topology::FragmentMesh& fragments, ElementId e) const;
+    ElementInput input_of(const fragments::FragmentMesh& fragments, ElementId e) const;
 
     MaterialTable table_;  // without the fibres
     std::optional<topology::ElementField<ElementId, Vec3>> fibres_;

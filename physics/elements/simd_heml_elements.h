@@ -41,7 +41,7 @@ struct alignas(64) FibreGroup {
     Number u[3][LinkGroup<Number>::size];
 };
 
-/// The shares of a group of elements; see topology::FragmentMesh::share.
+/// The shares of a group of elements; see fragments::FragmentMesh::share.
 template <class Number>
 struct alignas(64) ShareGroup {
     Number share[LinkGroup<Number>::size];

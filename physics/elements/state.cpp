@@ -8,10 +8,10 @@
 
 namespace incise::physics {
 
-using topology::FragmentMeshChanges;
-using topology::NodeRecord;
+using fragments::FragmentMeshChanges;
+using fragments::NodeRecord;
 
-State::State(const topology::FragmentMesh& fragments, std::size_t history_size)
+State::State(const fragments::FragmentMesh& fragments, std::size_t history_size)
     : positions_(fragments.rest_positions().begin(), fragments.rest_positions().end()),
       velocities_(positions_.size(), Vec3::Zero()),
       history_(history_size, fragments.element_capacity()) {}
@@ -60,7 +60,7 @@ void State::take_from_sources(const NodeRecord& record) {
     velocities_[record.id.index()] = v;
 }
 
-void State::apply(const topology::FragmentMesh& fragments, const FragmentMeshChanges& changes,
+void State::apply(const fragments::FragmentMesh& fragments, const FragmentMeshChanges& changes,
                   std::span<double> masses) {
     const std::size_t most_nodes =
         std::max(changes.node_capacity_before, changes.node_capacity_after);

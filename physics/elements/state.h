@@ -9,9 +9,9 @@
 
 #include "incise/base/archive.h"
 #include "incise/base/types.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/physics/elements/viscous_history.h"
 #include "incise/topology/change_set.h"
-#include "incise/topology/fragment_mesh.h"
 
 namespace incise::physics {
 
@@ -23,7 +23,7 @@ class State {
   public:
     /// Sets all nodes to their rest positions, without velocity. For `history_size` see
     /// ViscousHistory.
-    State(const topology::FragmentMesh& fragments, std::size_t history_size);
+    State(const fragments::FragmentMesh& fragments, std::size_t history_size);
 
     std::span<const Vec3> positions() const { return positions_; }    ///< m, current, by node id
     std::span<const Vec3> velocities() const { return velocities_; }  ///< m/s, by node id
@@ -49,8 +49,8 @@ class State {
     /// @param masses     lumped, kg, by node id, before the edit; the mass of a merged node is
     /// added
     ///                   to that of its survivor
-    void apply(const topology::FragmentMesh& fragments,
-               const topology::FragmentMeshChanges& changes, std::span<double> masses);
+    void apply(const fragments::FragmentMesh& fragments,
+               const fragments::FragmentMeshChanges& changes, std::span<double> masses);
 
     /// Sets the velocity of a node, m/s, as a part of an edit. The version stays: results that
     /// depend on velocities must follow the edit themselves.
@@ -74,7 +74,7 @@ class State {
     };
     void merge(NodeId absorbed, NodeId survivor, std::span<double> masses);
     bool take_back_merge(NodeId absorbed);
-    void take_from_sources(const topology::NodeRecord& record);
+    void take_from_sources(const fragments::NodeRecord& record);
 
     std::vector<Vec3> positions_, velocities_;
     ViscousHistory history_;

@@ -7,8 +7,8 @@
 
 namespace incise::physics {
 
-void ViscousHistory::apply(const topology::FragmentMesh&,
-                           const topology::FragmentMeshChanges& changes) {
+void ViscousHistory::apply(const fragments::FragmentMesh&,
+                           const fragments::FragmentMeshChanges& changes) {
     if (is_empty()) return;
     resize(std::max(changes.element_capacity_before, changes.element_capacity_after));
     topology::for_each_part(changes, [&](ElementId parent, ElementId part) {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "incise/base/types.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/topology/change_set.h"
-#include "incise/topology/fragment_mesh.h"
 
 namespace incise::physics {
 
@@ -53,8 +53,8 @@ class ViscousHistory {
     /// Follows an edit. Parts of a divided element inherit its values unchanged, since a linear
     /// element has the same stress everywhere. Elements that an undo brings back still have their
     /// values. Cost: proportional to the elements added.
-    void apply(const topology::FragmentMesh& fragments,
-               const topology::FragmentMeshChanges& changes);
+    void apply(const fragments::FragmentMesh& fragments,
+               const fragments::FragmentMeshChanges& changes);
 
   private:
     void resize(std::size_t num_elements) { values_.resize(num_elements * size_, 0.0); }

@@ -13,7 +13,7 @@
 
 namespace incise::physics {
 
-using topology::FragmentMesh;
+using fragments::FragmentMesh;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 namespace {

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/physics/body/constraints.h"
-#include "incise/topology/fragment_mesh.h"
 
 namespace incise::physics {
 
@@ -36,13 +36,13 @@ struct FreeComponent {
 
 /// Returns the free components at the given positions (m, by node id).
 /// Cost: O(#nodes + #elements).
-std::vector<FreeComponent> find_free_components(const topology::FragmentMesh& fragments,
+std::vector<FreeComponent> find_free_components(const fragments::FragmentMesh& fragments,
                                                 std::span<const Vec3> positions,
                                                 const Constraints& constraints);
 
 /// Throws MotionFailure if the forces (N, by node id) would move the free component. The failure
 /// names one of its elements, by its label in the mesh.
-void require_equilibrium(const topology::FragmentMesh& fragments, const topology::Mesh& mesh,
+void require_equilibrium(const fragments::FragmentMesh& fragments, const topology::Mesh& mesh,
                          const FreeComponent& piece, std::span<const Vec3> positions,
                          std::span<const Vec3> forces);
 

@@ -55,7 +55,7 @@ void NewtonSolver::follow(const Model& model) {
 }
 
 void NewtonSolver::prepare(const Model& model) {
-    const topology::FragmentMesh& fragments = model.fragments();
+    const fragments::FragmentMesh& fragments = model.fragments();
     is_free_.assign(fragments.node_capacity(), {true, true, true});
     for (std::size_t n = 0; n < is_free_.size(); ++n)
         if (const auto* constraint_of = model.constraints().of_node(n))

@@ -9,7 +9,7 @@
 
 namespace incise::physics {
 
-using topology::FragmentMesh;
+using fragments::FragmentMesh;
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/physics/elements/element_block.h"
 #include "incise/physics/solve/sparse_factor.h"
-#include "incise/topology/fragment_mesh.h"
 
 namespace incise::physics {
 
@@ -25,7 +25,7 @@ class TangentMatrix final : public TangentSink {
     /// the order of elimination of the nodes, by dissect(). The components of a node are next to
     /// each other, since they have the same neighbours.
     /// `is_free` is by node id, and is read for living nodes.
-    void set_pattern(const topology::FragmentMesh& fragments,
+    void set_pattern(const fragments::FragmentMesh& fragments,
                      std::span<const std::array<bool, 3>> is_free);
 
     std::size_t num_unknowns() const { return static_cast<std::size_t>(lower_.rows()); }

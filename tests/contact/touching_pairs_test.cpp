@@ -43,7 +43,7 @@ TEST(TouchingPairs, AreThoseThatASearchThroughAllFinds) {
         SCOPED_TRACE(seed);
         test::Random random(seed);
         Mesh mesh = Mesh::build(test::jittered_cube(4, 0.1, seed)).mesh;
-        topology::FragmentMesh fragments(mesh);
+        fragments::FragmentMesh fragments(mesh);
         topology::BoundarySurface surface(mesh);
         const auto changes = test::cut_along_plane(mesh, Vec3::Constant(0.5), random.vector(1.0));
         fragments.apply(mesh, changes);
@@ -96,7 +96,7 @@ TEST(TouchingPairs, AreThoseThatASearchThroughAllFinds) {
 TEST(TouchingPairs, OfAWholeConvexBodyAreNone) {
     for (std::uint64_t seed = 0; seed < test::num_cases(5); ++seed) {
         const Mesh mesh = Mesh::build(test::jittered_cube(5, 0.1, seed)).mesh;
-        const topology::FragmentMesh fragments(mesh);
+        const fragments::FragmentMesh fragments(mesh);
         const topology::BoundarySurface surface(mesh);
         const std::vector<std::uint8_t> all(surface.triangles().size(), 1);
         const ContactBody body{mesh, fragments, surface.faces(), all};

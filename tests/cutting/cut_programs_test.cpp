@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "cut_balance.h"
+#include "incise/fragments/validate.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/topology/validate.h"
 
@@ -136,7 +137,7 @@ class Patient {
     void check(const Balance& before, const physics::ModelChanges& done) {
         ASSERT_EQ(topology::validate(mesh_), std::vector<std::string>{});
         EXPECT_NEAR(rest_volume(mesh_), rest_volume_, 1e-12 * rest_volume_);
-        ASSERT_EQ(topology::validate(model_.fragments(), mesh_), std::vector<std::string>{});
+        ASSERT_EQ(fragments::validate(model_.fragments(), mesh_), std::vector<std::string>{});
         EXPECT_GE(model_.rest_stable_step(), least_step_ * (1.0 - 1e-12));
         expect_kept(before, model_, done);
         expect_equal_to_a_fresh_one(model_, table_);

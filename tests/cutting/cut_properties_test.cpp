@@ -15,6 +15,7 @@
 #include "incise/cutting/surfaces/plane.h"
 #include "incise/cutting/surfaces/swept_edge.h"
 #include "incise/cutting/surfaces/triangle_surface.h"
+#include "incise/fragments/validate.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
 #include "split_body.h"
@@ -230,7 +231,7 @@ class Patient {
         physics::ModelChanges done = model_.apply(mesh_, changes);
         if (changes.is_empty()) return;
         ASSERT_EQ(topology::validate(mesh_), std::vector<std::string>{});
-        ASSERT_EQ(topology::validate(model_.fragments(), mesh_), std::vector<std::string>{});
+        ASSERT_EQ(fragments::validate(model_.fragments(), mesh_), std::vector<std::string>{});
         expect_kept(before, model_, done);
         done_.emplace_back(changes, std::move(done));
         expect_equal_to_a_fresh_one(model_, table_);

@@ -44,7 +44,7 @@ class SplitBody {
     Box box() const;  ///< of the present positions
 
     topology::Mesh mesh;
-    topology::FragmentMesh fragments;
+    fragments::FragmentMesh fragments;
     std::vector<Vec3> positions;  ///< by node id, m
     SnapHistory snap_history;     // of all cuts so far
     test::FirstSurface first_surface;

@@ -13,6 +13,7 @@
 
 #include "incise/base/error.h"
 #include "incise/cutting/surfaces/plane.h"
+#include "incise/fragments/validate.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/mesh_metrics.h"
@@ -374,7 +375,7 @@ TEST(FragmentsOfCuts, OfThinSlicesHangTogether) {
                 const Vec3 normal = random.vector(1.0).normalized();
                 for (const double offset : {0.0, thickness}) {
                     body.cut(Plane(point + offset / num_bricks * normal, normal));
-                    EXPECT_EQ(topology::validate(body.fragments, body.mesh),
+                    EXPECT_EQ(fragments::validate(body.fragments, body.mesh),
                               std::vector<std::string>{});
                 }
             }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "incise/fragments/fragment_mesh.h"
+#include "incise/fragments/validate.h"
 #include "incise/io/mesh/abaqus_reader.h"
 #include "incise/io/mesh/febio_reader.h"
 #include "incise/io/mesh/gmsh_reader.h"
@@ -11,10 +13,8 @@
 #include "incise/io/mesh/usda_reader.h"
 #include "incise/io/vtk/legacy_vtk_reader.h"
 #include "incise/io/vtk/vtu_reader.h"
-#include "incise/topology/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_repair.h"
-#include "incise/topology/validate.h"
 #include "tests/fuzz/findings.h"
 #include "tests/fuzz/targets.h"
 #include "tests/support/mesh_consistency.h"
@@ -26,7 +26,7 @@ namespace {
 void build(const topology::MeshData& mesh) {
     try {
         const topology::Mesh built = topology::Mesh::build(mesh).mesh;
-        for (const auto& fault : topology::validate(topology::FragmentMesh(built), built))
+        for (const auto& fault : fragments::validate(fragments::FragmentMesh(built), built))
             require_none(fault);
     } catch (const InputError&) {
         // Parts that fit one another may still make no mesh.

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "incise/base/archive.h"
+#include "incise/fragments/validate.h"
 #include "incise/physics/body/body_arrays.h"
 #include "incise/physics/solve/integrator.h"
 #include "incise/topology/box_mesh.h"
-#include "incise/topology/validate.h"
 #include "support/exact_plane.h"
 #include "support/num_cases.h"
 #include "tests/physics/balance.h"
@@ -17,8 +17,8 @@
 namespace incise::physics {
 namespace {
 
+using fragments::FragmentMesh;
 using topology::ChangeSet;
-using topology::FragmentMesh;
 using topology::Mesh;
 
 const std::vector<std::string> no_violations;
@@ -65,7 +65,7 @@ TEST(CutBodies, KeepAllTotalsWithoutLightFragments) {
                 const Balance before(body.model);
                 const FollowedEdit done = follow(body.model, random_cut(body.mesh, random));
                 EXPECT_FALSE(done.of_model.fragments.has_joins());
-                ASSERT_EQ(topology::validate(body.model.fragments(), body.mesh), no_violations);
+                ASSERT_EQ(fragments::validate(body.model.fragments(), body.mesh), no_violations);
                 expect_balance(before, body.model, done, {});
             }
         }
@@ -77,13 +77,13 @@ TEST(CutBodies, KeepMassAndMomentaWithLightFragments) {
         for (std::uint64_t seed = 0; seed < test::num_cases(5); ++seed) {
             SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
             // One region: light fragments only join within theirs.
-            MovingBody body(family->data, topology::default_light_share, seed,
+            MovingBody body(family->data, fragments::default_light_share, seed,
                             Precision::double_precision, false);
             test::Random random(seed);
             for (int i = 0; i < 3; ++i) {
                 const Balance before(body.model);
                 const FollowedEdit done = follow(body.model, random_cut(body.mesh, random));
-                ASSERT_EQ(topology::validate(body.model.fragments(), body.mesh), no_violations);
+                ASSERT_EQ(fragments::validate(body.model.fragments(), body.mesh), no_violations);
                 const Totals &a = before.totals, b = body.model.totals();
                 EXPECT_NEAR(a.mass, b.mass, round_off * a.mass);
                 EXPECT_NEAR(a.rest_volume, b.rest_volume, round_off * a.rest_volume);
@@ -128,7 +128,7 @@ void expect_totals_of_arrays(const Model& model, const Balance& balance) {
 
 TEST(CutBodies, HaveArraysThatAddUpToTheirTotals) {
     for (const auto* family : test::tetrahedral_families())
-        for (const double light_share : {0.0, topology::default_light_share}) {
+        for (const double light_share : {0.0, fragments::default_light_share}) {
             SCOPED_TRACE(family->name);
             MovingBody body(family->data, light_share, 1);
             test::Random random(1);
@@ -145,14 +145,14 @@ TEST(CutBodies, EqualFreshOnesAndArchivedOnesAndCanBeUndone) {
     for (const auto* family : test::tetrahedral_families())
         for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
             SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
-            MovingBody body(family->data, topology::default_light_share, seed);
+            MovingBody body(family->data, fragments::default_light_share, seed);
             test::Random random(seed);
             std::vector<FollowedEdit> edits;
             std::vector<ModelSnapshot> before;
             std::vector<double> gains;
             for (int i = 0; i < 3; ++i) {
                 before.emplace_back(body.model, body.time);
-                gains.push_back(body.model.embedded_nodes().largest_gain());
+                gains.push_back(body.model.embedding().largest_gain());
                 edits.push_back(follow(body.model, random_cut(body.mesh, random)));
                 const ModelSnapshot now(body.model, body.time);
                 MaterialTable table = body.table;
@@ -170,15 +170,15 @@ TEST(CutBodies, EqualFreshOnesAndArchivedOnesAndCanBeUndone) {
                 Model restored(body.mesh, without_fibres, reader, body.time);
                 EXPECT_TRUE(reader.is_at_end());
                 EXPECT_TRUE(restored.fragments() == body.model.fragments());
-                EXPECT_EQ(restored.embedded_nodes().largest_gain(),
-                          body.model.embedded_nodes().largest_gain());
+                EXPECT_EQ(restored.embedding().largest_gain(),
+                          body.model.embedding().largest_gain());
                 expect_equal(ModelSnapshot(restored, body.time), now);
                 EXPECT_TRUE(
                     std::ranges::equal(restored.mesh_positions(), body.model.mesh_positions()));
             }
             for (; !edits.empty(); edits.pop_back(), before.pop_back(), gains.pop_back()) {
                 take_back(body.mesh, body.model, edits.back());
-                EXPECT_EQ(body.model.embedded_nodes().largest_gain(), gains.back());
+                EXPECT_EQ(body.model.embedding().largest_gain(), gains.back());
                 expect_equal(ModelSnapshot(body.model, body.time), before.back());
             }
         }
@@ -187,7 +187,7 @@ TEST(CutBodies, EqualFreshOnesAndArchivedOnesAndCanBeUndone) {
 // Lanes and the readable kernels agree, and forces are those of the energy.
 TEST(CutBodies, HaveTheForcesOfTheirEnergy) {
     for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
-        MovingBody body(test::jittered_cube(3, 0.2, 5), topology::default_light_share, 2,
+        MovingBody body(test::jittered_cube(3, 0.2, 5), fragments::default_light_share, 2,
                         precision);
         test::Random random(4);
         follow(body.model, random_cut(body.mesh, random));
@@ -393,7 +393,7 @@ TEST(CutBodies, KeepTheirClampedFaceBetweenCutsNearEachOther) {
             follow(model, test::cut_along_plane(mesh, point + distance / n * normal,
                                                 normal + random.vector(0.02)));
             for (const ElementId e : model.fragments().elements())
-                num_small += model.fragments().share(e) < topology::default_light_share ? 1 : 0;
+                num_small += model.fragments().share(e) < fragments::default_light_share ? 1 : 0;
             double time = 0.0;
             for (int i = 0; i < 20; ++i) step(model, time, 0.5 * model.stable_step());
             const auto positions = model.mesh_positions();
@@ -469,7 +469,7 @@ TEST(CutBodies, AreNeverStifferThanTheirStiffestElement) {
     for (const auto* family : test::tetrahedral_families())
         for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
             SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
-            MovingBody body(family->data, topology::default_light_share, seed);
+            MovingBody body(family->data, fragments::default_light_share, seed);
             double least = std::numeric_limits<double>::infinity();
             for (const ElementId e : body.model.fragments().elements())
                 least = std::min(least, body.model.element_stable_step(e));

@@ -130,7 +130,7 @@ TEST(Bisection, KeepsForceAndMomentOfTractionAndPressure) {
             s.loads.push_back({"wind", TractionLoad{loaded, traction}, {}});
         // So soft that elastic forces, whose sum is nothing but round-off, do not show.
         // Without light fragments: these move with another one, and their faces with them.
-        Model model(mesh, topology::FragmentMesh(mesh, 0.0),
+        Model model(mesh, fragments::FragmentMesh(mesh, 0.0),
                     table_of_one_law(NeoHookean{1e-3, 1e-3}), s);
         test::Random random(13);
         BodyState state = random_state(mesh, random, 0.05, 0.0);

@@ -9,6 +9,7 @@
 #include <ostream>
 
 #include "incise/base/error.h"
+#include "incise/fragments/validate.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
 #include "support/generated_body.h"
@@ -309,7 +310,8 @@ class FollowingBody {
         } else {
             followed_.push_back(follow(model_, *changes));
         }
-        EXPECT_EQ(topology::validate(model_.fragments(), mesh_.mesh()), std::vector<std::string>{});
+        EXPECT_EQ(fragments::validate(model_.fragments(), mesh_.mesh()),
+                  std::vector<std::string>{});
         acting_.follow(mesh_.mesh(), *changes);
         if (step.fate == Fate::undo) {
             expect_equal(now(), before_.back());

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "incise/base/error.h"
+#include "incise/fragments/validate.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
@@ -68,7 +69,7 @@ class EditedBody {
     /// where these want them. Later nodes lie by their sources, shaken but little: so the strain of
     /// parts is that of the first elements, however small they are.
     void shake() {
-        const topology::FragmentMesh& fragments = model_.fragments();
+        const fragments::FragmentMesh& fragments = model_.fragments();
         BodyState state = random_state(fragments, random_, 0.02, 1.0);
         put_on_constraints(model_, time, state);
         const double room = shortest_edge();
@@ -97,7 +98,7 @@ class EditedBody {
         ASSERT_EQ(topology::validate(mesh_), no_violations);
         compute_ahead();
         const FollowedEdit done = follow(model_, changes);
-        ASSERT_EQ(topology::validate(model_.fragments(), mesh_), no_violations);
+        ASSERT_EQ(fragments::validate(model_.fragments(), mesh_), no_violations);
         expect_balance(before, model_, done, carried);
         const MeshSnapshot mesh_after(mesh_);
         const ModelSnapshot model_after(model_, time);
@@ -173,7 +174,7 @@ class EditedBody {
     Selections selections_;  // of the first mesh
     Descent descent_;
     Model model_;
-    std::vector<topology::NodeRecord> nodes_born_;
+    std::vector<fragments::NodeRecord> nodes_born_;
     test::Random random_;
 };
 

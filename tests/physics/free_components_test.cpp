@@ -25,7 +25,7 @@ Constraint hold(std::vector<std::size_t> nodes,
 }
 
 std::vector<FreeComponent> free_components_of(const Mesh& mesh, const Constraint& constraint) {
-    const topology::FragmentMesh fragments(mesh);
+    const fragments::FragmentMesh fragments(mesh);
     return find_free_components(
         fragments, mesh.rest_positions(),
         Constraints({mesh, fragments}, {constraint}, mesh.rest_positions()));
@@ -52,7 +52,7 @@ TEST(FreeComponents, TurnAboutAnEdgeThatIsHeld) {
 TEST(FreeComponents, MoveInAllWaysWhereNothingHoldsThem) {
     for_each_thin_tetrahedron([](const Tetrahedron& X, double) {
         const Mesh mesh = mesh_of(X);
-        const topology::FragmentMesh fragments(mesh);
+        const fragments::FragmentMesh fragments(mesh);
         const auto pieces =
             find_free_components(fragments, mesh.rest_positions(),
                                  Constraints({mesh, fragments}, {}, mesh.rest_positions()));

@@ -7,18 +7,18 @@
 #include <string>
 
 #include "incise/base/error.h"
+#include "incise/fragments/validate.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/vtk/vtu_writer.h"
 #include "incise/runner/frame_builder.h"
 #include "incise/scenario/body.h"
-#include "incise/topology/validate.h"
 #include "run_folder.h"
 #include "support/fragment_shape.h"
 
 namespace incise::runner {
 namespace {
 
-using topology::FragmentMesh;
+using fragments::FragmentMesh;
 using topology::Mesh;
 
 /// Through the whole cube at a slant, or down to its middle, where the mesh has no faces.
@@ -85,7 +85,7 @@ TEST_P(CutFrame, ReadAsAMeshIsTheBodyAtRest) {
     const FragmentMesh& before = written.model().fragments();
     Simulation read(scenario);
     const FragmentMesh& after = read.model().fragments();
-    EXPECT_EQ(topology::validate(after, read.mesh()), std::vector<std::string>{});
+    EXPECT_EQ(fragments::validate(after, read.mesh()), std::vector<std::string>{});
     EXPECT_TRUE(shape_in_file(read.mesh(), after) == shape_in_file(written.mesh(), before));
     EXPECT_EQ(after.num_nodes(), before.num_nodes());
     // The order of sums differs with the ids.

@@ -177,7 +177,7 @@ double pulling_force(const Simulation& simulation) {
 /// Sum of the net forces on nodes between the ends, over the pulling force: no less than what the
 /// forces at the two ends may differ by.
 double imbalance(const Simulation& simulation, const Notch& notch) {
-    const topology::FragmentMesh& fragments = simulation.model().fragments();
+    const fragments::FragmentMesh& fragments = simulation.model().fragments();
     double sum = 0.0;
     for (const NodeId n : fragments.nodes()) {
         const double z = fragments.rest_position(n).z();

@@ -65,7 +65,7 @@ TEST(SplittingBlade, PartsTheBodyWhileItMoves) {
     // The section of the cube, which hangs through: a slanting cut of 0.01 m2, and some per cent.
     EXPECT_NEAR(area, 0.0104, 0.0002);
     // Of the fragments that are left.
-    const topology::FragmentMesh& fragments = simulation.model().fragments();
+    const fragments::FragmentMesh& fragments = simulation.model().fragments();
     double volume_away = 0.0;
     for (const CellId cell : simulation.mesh().elements())
         if (!fragments.is_at_home(cell))

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "incise/topology/fragment_mesh.h"
+#include "incise/fragments/fragment_mesh.h"
 
 namespace incise::test {
 
@@ -24,7 +24,7 @@ struct FragmentShape {
 
 /// @param name  a number for each cell; numbers ascend with ids
 inline FragmentShape shape_of(
-    const topology::FragmentMesh& fragments,
+    const fragments::FragmentMesh& fragments,
     const std::function<std::int64_t(CellId)>& name = [](CellId e) { return e.value; }) {
     FragmentShape shape;
     std::map<NodeId, std::vector<std::pair<std::int64_t, int>>> corners;

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/topology/fragment_archive.h"
+#include "incise/fragments/fragment_archive.h"
 
 #include <algorithm>
 #include <string>
 
+#include "incise/fragments/validate.h"
 #include "incise/topology/geometry.h"
-#include "incise/topology/validate.h"
 
-namespace incise::topology {
+namespace incise::fragments {
+
+using topology::CellKind;
+using topology::FollowedEpoch;
+using topology::Mesh;
+using topology::num_cell_kinds;
+using topology::traits;
 
 /// The list of members that an archive of fragments contains, and the computation of the others.
 class FragmentArchive {
@@ -125,4 +131,4 @@ FragmentMesh load_fragments(const Mesh& material, ArchiveReader& ar) {
     return FragmentArchive::load(material, ar);
 }
 
-}  // namespace incise::topology
+}  // namespace incise::fragments

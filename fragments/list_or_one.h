@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace incise::topology {
+namespace incise::fragments {
 
 /// A view of the ids of a list, or of one id that the view has itself.
 /// @lifetime That of the list.
@@ -28,4 +28,4 @@ class ListOrOne {
     Id one_;
 };
 
-}  // namespace incise::topology
+}  // namespace incise::fragments

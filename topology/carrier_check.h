@@ -1,21 +1,14 @@
-// The carriers of a body that was cut, as files contain them: written from its fragments, and
-// checked before a mesh is built with them. SPDX-License-Identifier: LGPL-3.0-or-later
+// The check of the carriers of a body that was cut, before a mesh is built with them.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <span>
 #include <string>
 
-#include "incise/topology/fragment_mesh.h"
-#include "incise/topology/mesh.h"
 #include "incise/topology/mesh_check.h"
 #include "incise/topology/mesh_data.h"
 
 namespace incise::topology {
-
-/// Returns the carriers of the living elements, in the order of to_mesh_data(). An element is whole
-/// if it has the corners of its carrier. Empty if all are whole. Cost: O(n).
-/// @param fragments  of the mesh, at its epoch
-Carriers carriers_of(const Mesh& mesh, const FragmentMesh& fragments);
 
 /// Returns why the carriers cannot be those of the cells, with a remedy. Empty if they can be.
 ///

@@ -13,64 +13,18 @@
 #include <vector>
 
 #include "incise/base/types.h"
+#include "incise/fragments/embedded_point.h"
+#include "incise/fragments/fragment_changes.h"
+#include "incise/fragments/list_or_one.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/follower.h"
-#include "incise/topology/list_or_one.h"
 #include "incise/topology/living_ids.h"
 #include "incise/topology/mesh.h"
 
-namespace incise::topology {
+namespace incise::fragments {
 
 /// A fragment with less than this share of its carrier is light.
 inline constexpr double default_light_share = 0.2;
-
-/// A change of the share of a fragment that existed before and after the edit.
-struct ShareChange {
-    ElementId fragment;
-    double from = 0.0, to = 0.0;
-    bool operator==(const ShareChange&) const = default;
-};
-
-/// A cell that an edit gave to another fragment, or that hangs on the same one in another way; see
-/// FragmentMesh::is_carried_around(). Invalid: the cell did not exist, or was removed.
-struct CarriedCell {
-    CellId cell;
-    CarrierId carrier;
-    ElementId from, to;
-    /// True if the edit took the cell out of a fragment that carried it with a light part, or gave
-    /// it to such a one. A new cell comes out of the fragment that carried its parent.
-    bool is_released = false, is_joined = false;
-    /// Whether it was carried around a cut before the edit, and is now. Where only this changes,
-    /// `from` and `to` are the same.
-    bool was_around = false, is_around = false;
-    bool operator==(const CarriedCell&) const = default;
-};
-
-/// The record of an edit of a fragment mesh.
-struct FragmentChanges {
-    /// Fragments and their nodes. The parent of an added fragment is the one that carried its first
-    /// cell before. No faces: fragments have none.
-    FragmentMeshChanges mesh;
-    std::vector<ShareChange> shares;  ///< in ascending order of fragments
-    std::vector<CarriedCell> cells;   ///< in ascending order of cells
-    /// True if a light fragment joined another one or parted from it. Then other nodes carry a part
-    /// of the mass.
-    bool has_joins() const {
-        return std::ranges::any_of(
-            cells, [](const CarriedCell& cell) { return cell.is_released || cell.is_joined; });
-    }
-    bool operator==(const FragmentChanges&) const = default;
-};
-
-/// The position of a vertex of the material in a fragment: a combination of the corners of the
-/// fragment, with weights that sum to 1. In a fragment that carries material of another carrier,
-/// weights can be negative.
-struct Embedding {
-    ElementId fragment;
-    std::array<NodeId, max_corners> nodes{};
-    std::array<double, max_corners> weights{};
-    int count = 0;  ///< 1 for a node that is a corner of the fragment
-};
 
 /// Fragments and their nodes: the elements and nodes of the physics.
 ///
@@ -95,7 +49,7 @@ class FragmentMesh {
     /// @param material     the body as it was built, before its first edit
     /// @param light_share  see default_light_share; with 0 no fragment is light
     /// @param held         see hold()
-    explicit FragmentMesh(const Mesh& material, double light_share = default_light_share,
+    explicit FragmentMesh(const topology::Mesh& material, double light_share = default_light_share,
                           std::span<const VertexId> held = {});
 
     /// Sets the nodes of the material whose positions are prescribed. No fragment with material at
@@ -105,14 +59,14 @@ class FragmentMesh {
     /// Follows an edit of the material, and returns what it did to the fragments.
     /// Throws InputError, and changes nothing, for an edit out of turn.
     /// Cost: proportional to the elements at the nodes of the carriers that the edit touches.
-    FragmentChanges apply(const Mesh& material, const ChangeSet& changes);
+    FragmentChanges apply(const topology::Mesh& material, const topology::ChangeSet& changes);
     /// Takes back an edit that apply() has followed, with all its ids: those that it gave out are
     /// free again.
     /// @param material  the material, on which the inverse of the edit was replayed
     /// @param changes   what apply() returned
     /// Throws InputError, and changes nothing, unless the edit is the last one.
     /// Cost: proportional to the edit.
-    void undo(const Mesh& material, const FragmentChanges& changes);
+    void undo(const topology::Mesh& material, const FragmentChanges& changes);
 
     /// Returns the epoch of the material that the fragments are those of.
     std::uint64_t epoch() const { return epoch_.value(); }
@@ -122,10 +76,12 @@ class FragmentMesh {
     bool is_alive(ElementId e) const { return is_alive_[e.index()] != 0; }
     std::size_t num_nodes() const { return num_nodes_; }
     std::size_t num_elements() const { return num_elements_; }
-    LivingIds<NodeId, FragmentMesh> nodes() const { return {*this, node_capacity()}; }
-    LivingIds<ElementId, FragmentMesh> elements() const { return {*this, element_capacity()}; }
+    topology::LivingIds<NodeId, FragmentMesh> nodes() const { return {*this, node_capacity()}; }
+    topology::LivingIds<ElementId, FragmentMesh> elements() const {
+        return {*this, element_capacity()};
+    }
 
-    CellKind kind(ElementId e) const { return kinds_[carriers_[e.index()].index()]; }
+    topology::CellKind kind(ElementId e) const { return kinds_[carriers_[e.index()].index()]; }
     int region(ElementId e) const { return regions_[carriers_[e.index()].index()]; }
     /// Returns the corners in the order of cell_kind.h. A dead fragment keeps its last corners.
     std::span<const NodeId> corners(ElementId e) const {
@@ -151,7 +107,7 @@ class FragmentMesh {
     NodeId origin(NodeId n) const { return origins_[n.index()]; }
     /// Returns the vertex that the origin of a node was before any cut. Invalid if the body was
     /// built with carriers and has no material there.
-    VertexId vertex_of_origin(const Mesh& material, NodeId n) const;
+    VertexId vertex_of_origin(const topology::Mesh& material, NodeId n) const;
     /// Writes the fragments with the node as a corner to `elements`, in ascending order.
     void star(NodeId n, std::vector<ElementId>& elements) const;
     /// Returns the lowest fragment with the node as a corner; invalid for a dead node.
@@ -181,13 +137,14 @@ class FragmentMesh {
     /// Returns the combination of nodes that a living node of the material follows. Of the
     /// fragments at the node it is in the lowest one that has cells of its own carrier there, or
     /// else in the lowest one.
-    Embedding embedding(const Mesh& material, VertexId n) const;
+    EmbeddedPoint embedded(const topology::Mesh& material, VertexId v) const;
     /// Returns the combination of the corners of a fragment that is at `x` at rest, m.
     /// @pre  the fragment is a tetrahedron, or `x` is the place of one of its corners
-    Embedding embedding_in(ElementId e, const Vec3& x) const;
+    EmbeddedPoint embedded(ElementId e, const Vec3& x) const;
     /// Returns the weights of the corners of a carrier, in their order, for a point at `x` at rest,
-    /// m. See embedding_in().
-    std::array<double, max_corners> weights_in_carrier(CarrierId carrier, const Vec3& x) const;
+    /// m. See embedded().
+    std::array<double, topology::max_corners> weights_in_carrier(CarrierId carrier,
+                                                                 const Vec3& x) const;
     /// Returns the origins of the corners of a carrier, in their order; see origin().
     std::span<const NodeId> origins_of(CarrierId carrier) const;
 
@@ -198,9 +155,9 @@ class FragmentMesh {
     friend class FragmentParts;
     friend class FragmentUpdate;
 
-    FragmentMesh(double light_share, FollowedEpoch epoch)
+    FragmentMesh(double light_share, topology::FollowedEpoch epoch)
         : light_share_(light_share), epoch_(epoch) {}
-    std::vector<NodeId> add_nodes(const Mesh& material);
+    std::vector<NodeId> add_nodes(const topology::Mesh& material);
     /// Computes what follows from the lists of carriers and nodes.
     void complete();
     /// True if the element was dead before any cut, or was only a part of another carrier: then it
@@ -212,7 +169,7 @@ class FragmentMesh {
     }
 
     /// Follows the nodes that an edit of the material adds: see is_held().
-    void hold_new_nodes(const ChangeSet& changes);
+    void hold_new_nodes(const topology::ChangeSet& changes);
     void truncate(std::size_t num_nodes, std::size_t num_elements, std::size_t num_cells);
     /// Moves a cell from the list of one fragment to that of another; either may be invalid.
     void move_cell(CellId cell, ElementId from, ElementId to);
@@ -257,12 +214,12 @@ class FragmentMesh {
     std::span<const CarrierId> carriers_at(NodeId origin) const;
 
     double light_share_;
-    FollowedEpoch epoch_;
+    topology::FollowedEpoch epoch_;
     std::size_t num_nodes_ = 0, num_elements_ = 0;
     std::size_t num_origins_ = 0;  // the nodes before any cut are those with lower ids
 
     // By carrier, that is by id of an element before any cut. These never change.
-    std::vector<CellKind> kinds_;
+    std::vector<topology::CellKind> kinds_;
     std::vector<int> regions_;
     std::vector<double> volumes_;  // at rest, m3
     std::vector<std::size_t> origin_begin_{0};
@@ -297,4 +254,4 @@ class FragmentMesh {
     Lists<ElementId, CellId> cells_of_fragment_;
 };
 
-}  // namespace incise::topology
+}  // namespace incise::fragments

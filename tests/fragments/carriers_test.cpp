@@ -1,6 +1,6 @@
 // Carriers of a cut body: written from its fragments, they give the same fragments again.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/topology/carriers.h"
+#include "incise/fragments/carriers.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,9 @@
 #include <limits>
 
 #include "incise/base/error.h"
-#include "incise/topology/fragment_archive.h"
+#include "incise/fragments/fragment_archive.h"
+#include "incise/fragments/validate.h"
+#include "incise/topology/mesh_check.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/mesh_repair.h"
 #include "incise/topology/validate.h"
@@ -18,8 +20,10 @@
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
 
-namespace incise::topology {
+namespace incise::fragments {
 namespace {
+
+using namespace topology;
 
 MeshData written(const Mesh& material, const FragmentMesh& fragments) {
     MeshData data = to_mesh_data(material, material.rest_positions());
@@ -220,7 +224,7 @@ TEST(Carriers, MoveWithPointsThatWeldingMoves) {
 
 TEST(Carriers, ThatCannotBeRightAreRefused) {
     const MeshData sound = cut_cube();
-    EXPECT_TRUE(check(sound).errors.empty());
+    EXPECT_TRUE(topology::check(sound).errors.empty());
     std::size_t cut = 0;  // the first cell that is a part
     while (sound.carriers.of_cell[cut] == Carriers::whole) ++cut;
     const auto expect_fault = [&](const std::string& text,
@@ -228,7 +232,7 @@ TEST(Carriers, ThatCannotBeRightAreRefused) {
         SCOPED_TRACE(text);
         MeshData forged = sound;
         forge(forged);
-        const auto errors = check(forged).errors;
+        const auto errors = topology::check(forged).errors;
         ASSERT_EQ(errors.size(), 1u);
         EXPECT_NE(errors.front().find(text), std::string::npos) << errors.front();
         EXPECT_NE(errors.front().find("leave out"), std::string::npos) << errors.front();
@@ -280,4 +284,4 @@ TEST(Carriers, ThatCannotBeRightAreRefused) {
 }
 
 }  // namespace
-}  // namespace incise::topology
+}  // namespace incise::fragments

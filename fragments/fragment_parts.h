@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "incise/base/disjoint_set.h"
-#include "incise/topology/fragment_mesh.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
-namespace incise::topology {
+namespace incise::fragments {
 
 /// Finds the parts of carriers as they are asked for. A part consists of the cells of one carrier
 /// that hang together inside it. Uses scratch of the fragment mesh while it lives.
@@ -51,7 +51,7 @@ class FragmentParts {
     };
 
     /// @pre  the fragment mesh has the lists of cells after the edit
-    FragmentParts(FragmentMesh& fragments, const Mesh& material)
+    FragmentParts(FragmentMesh& fragments, const topology::Mesh& material)
         : fragments_(fragments), material_(material) {}
     ~FragmentParts();
     FragmentParts(const FragmentParts&) = delete;
@@ -110,11 +110,11 @@ class FragmentParts {
     }
 
     FragmentMesh& fragments_;
-    const Mesh& material_;
+    const topology::Mesh& material_;
     std::vector<CarrierId> carriers_found_;       // whose parts are known
     std::pmr::monotonic_buffer_resource memory_;  // of the parts
     std::vector<Part*> parts_;                    // those of a carrier follow each other
     std::vector<CellId> cells_, members_;         // scratch of find()
 };
 
-}  // namespace incise::topology
+}  // namespace incise::fragments

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/topology/fragment_update.h"
+#include "incise/fragments/fragment_update.h"
 
 #include <algorithm>
 #include <cassert>
@@ -10,7 +10,12 @@
 #include "incise/base/disjoint_set.h"
 #include "incise/topology/geometry.h"
 
-namespace incise::topology {
+namespace incise::fragments {
+
+using topology::CellRecord;
+using topology::ChangeSet;
+using topology::FacePair;
+using topology::Mesh;
 
 namespace {
 
@@ -310,8 +315,8 @@ NodeId FragmentUpdate::add_node(const Group& group) {
         record.sources[0] = {group.before, 1.0};
     } else {
         // A light part becomes an element: it goes on from where it was carried.
-        const Embedding from =
-            fragments_.embedding_in(parent_of(group.fragments.front()), record.rest_position);
+        const EmbeddedPoint from =
+            fragments_.embedded(parent_of(group.fragments.front()), record.rest_position);
         record.num_sources = from.count;
         for (std::size_t k = 0; k < static_cast<std::size_t>(from.count); ++k)
             record.sources[k] = {from.nodes[k], from.weights[k]};
@@ -466,4 +471,4 @@ FragmentChanges FragmentUpdate::differences() {
     return result;
 }
 
-}  // namespace incise::topology
+}  // namespace incise::fragments

@@ -10,23 +10,24 @@
 #include <utility>
 #include <vector>
 
+#include "incise/fragments/fragment_mesh.h"
+#include "incise/fragments/fragment_parts.h"
 #include "incise/topology/change_set.h"
-#include "incise/topology/fragment_mesh.h"
-#include "incise/topology/fragment_parts.h"
 #include "incise/topology/mesh.h"
 
-namespace incise::topology {
+namespace incise::fragments {
 
 /// Finds the fragments and their nodes anew near an edit. Used once.
 class FragmentUpdate {
   public:
-    FragmentUpdate(FragmentMesh& fragments, const Mesh& material, const ChangeSet& changes)
+    FragmentUpdate(FragmentMesh& fragments, const topology::Mesh& material,
+                   const topology::ChangeSet& changes)
         : fragments_(fragments), material_(material), changes_(changes) {}
 
     FragmentChanges run();
     /// Finds the fragments of a body that is built, in which each carrier is still one fragment.
     /// @param carriers  those that consist of several cells, or are only a part of their volume
-    static void divide(FragmentMesh& fragments, const Mesh& material,
+    static void divide(FragmentMesh& fragments, const topology::Mesh& material,
                        std::vector<CarrierId> carriers);
 
   private:
@@ -73,8 +74,8 @@ class FragmentUpdate {
     FragmentChanges differences();
 
     FragmentMesh& fragments_;
-    const Mesh& material_;
-    const ChangeSet& changes_;
+    const topology::Mesh& material_;
+    const topology::ChangeSet& changes_;
 
     std::vector<CarrierId> touched_carriers_;  // in ascending order
     std::vector<CarrierId> parted_carriers_;   // those of them that were not only divided
@@ -99,4 +100,4 @@ class FragmentUpdate {
     std::size_t node_capacity_before_ = 0, element_capacity_before_ = 0;
 };
 
-}  // namespace incise::topology
+}  // namespace incise::fragments

@@ -8,16 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "incise/topology/fragment_mesh.h"
+#include "incise/fragments/fragment_mesh.h"
+#include "incise/fragments/validate.h"
 #include "incise/topology/mesh_edit.h"
-#include "incise/topology/validate.h"
 #include "support/exact_plane.h"
 #include "support/fragment_shape.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
 
-namespace incise::topology {
+namespace incise::fragments {
 namespace {
+
+using namespace topology;
 
 std::vector<CellId> living_cells(const Mesh& material) {
     std::vector<CellId> cells;
@@ -260,4 +262,4 @@ TEST(FragmentNodes, AreTheSameAfterUndoAndReplay) {
 }
 
 }  // namespace
-}  // namespace incise::topology
+}  // namespace incise::fragments

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/topology/fragment_parts.h"
+#include "incise/fragments/fragment_parts.h"
 
 #include <algorithm>
 #include <cassert>
@@ -7,7 +7,9 @@
 
 #include "incise/base/disjoint_set.h"
 
-namespace incise::topology {
+namespace incise::fragments {
+
+using topology::rest_volume;
 
 FragmentParts::~FragmentParts() {
     for (const CarrierId carrier : carriers_found_) fragments_.first_part_[carrier.index()] = -1;
@@ -328,4 +330,4 @@ DisjointSet FragmentParts::connected_elements(const std::vector<std::size_t>& ne
     return connected;
 }
 
-}  // namespace incise::topology
+}  // namespace incise::fragments

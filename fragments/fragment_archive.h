@@ -3,9 +3,9 @@
 #pragma once
 
 #include "incise/base/archive.h"
-#include "incise/topology/fragment_mesh.h"
+#include "incise/fragments/fragment_mesh.h"
 
-namespace incise::topology {
+namespace incise::fragments {
 
 /// Writes everything but the mesh itself. Cost: some 60 bytes an element and 30 a node.
 void save(const FragmentMesh& fragments, ArchiveWriter& ar);
@@ -13,6 +13,6 @@ void save(const FragmentMesh& fragments, ArchiveWriter& ar);
 /// Reads what save() has written. The result equals the saved object.
 /// Throws InputError for data that are not those of fragments of this mesh: see validate().
 /// @param material  the mesh, after the edits that the saved object has followed
-FragmentMesh load_fragments(const Mesh& material, ArchiveReader& ar);
+FragmentMesh load_fragments(const topology::Mesh& material, ArchiveReader& ar);
 
-}  // namespace incise::topology
+}  // namespace incise::fragments

@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/topology/fragment_mesh.h"
+#include "incise/fragments/fragment_mesh.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
-#include "incise/topology/fragment_update.h"
+#include "incise/fragments/fragment_update.h"
 #include "incise/topology/geometry.h"
 
-namespace incise::topology {
+namespace incise::fragments {
+
+using topology::Carriers;
+using topology::ChangeSet;
+using topology::FollowedEpoch;
+using topology::max_corners;
+using topology::Mesh;
+using topology::signed_volume;
+using topology::VertexRecord;
 
 namespace {
 
@@ -276,24 +284,24 @@ ElementId FragmentMesh::incident_element(NodeId n) const {
     return elements.empty() ? ElementId() : elements.front();
 }
 
-Embedding FragmentMesh::embedding(const Mesh& material, VertexId n) const {
+EmbeddedPoint FragmentMesh::embedded(const Mesh& material, VertexId v) const {
     std::vector<CellId> cells;
-    material.star(n, cells);
+    material.star(v, cells);
     ElementId at_home, lowest;
     for (const CellId cell : cells) {
         const ElementId e = fragment_of_cell(cell);
         if (!lowest.is_valid() || e < lowest) lowest = e;
         if (is_at_home(cell) && (!at_home.is_valid() || e < at_home)) at_home = e;
     }
-    return embedding_in(at_home.is_valid() ? at_home : lowest, material.rest_position(n));
+    return embedded(at_home.is_valid() ? at_home : lowest, material.rest_position(v));
 }
 
-Embedding FragmentMesh::embedding_in(ElementId e, const Vec3& x) const {
-    Embedding result{e, {}, weights_in_carrier(carrier(e), x), 0};
+EmbeddedPoint FragmentMesh::embedded(ElementId e, const Vec3& x) const {
+    EmbeddedPoint result{e, {}, weights_in_carrier(carrier(e), x), 0};
     const auto nodes = corners(e);
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-        if (rest_position(nodes[k]) != x) continue;
-        result.nodes[0] = nodes[k];
+    for (const NodeId n : nodes) {
+        if (rest_position(n) != x) continue;
+        result.nodes[0] = n;
         result.weights = {1.0};
         result.count = 1;
         return result;
@@ -333,4 +341,4 @@ std::array<double, max_corners> FragmentMesh::weights_in_carrier(CarrierId carri
     return weights;
 }
 
-}  // namespace incise::topology
+}  // namespace incise::fragments

@@ -1,6 +1,6 @@
 // Fragments of carriers: what they carry, how they are connected, and how they follow edits.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/topology/fragment_mesh.h"
+#include "incise/fragments/fragment_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -18,8 +18,10 @@
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
 
-namespace incise::topology {
+namespace incise::fragments {
 namespace {
+
+using namespace topology;
 
 double volume_of(const Mesh& mesh, CellId e) {
     std::vector<Vec3> x;
@@ -82,7 +84,7 @@ void expect_sound(const FragmentMesh& fragments, const Mesh& material) {
     }
     EXPECT_NEAR(volume, volume_of(material), 1e-12 * volume_of(material));
     for (const VertexId n : material.nodes()) {
-        const Embedding at = fragments.embedding(material, n);
+        const EmbeddedPoint at = fragments.embedded(material, n);
         Vec3 x = Vec3::Zero();
         double sum = 0.0;
         for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k) {
@@ -283,4 +285,4 @@ TEST(FragmentMesh, KeepsCarriersThatAreCutInPart) {
 }
 
 }  // namespace
-}  // namespace incise::topology
+}  // namespace incise::fragments
