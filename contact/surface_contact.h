@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "incise/contact/contact_settings.h"
 #include "incise/contact/contact_solver.h"
 #include "incise/contact/edge_contact.h"
 #include "incise/contact/surface_tree.h"
@@ -16,16 +17,6 @@
 #include "incise/topology/boundary_surface.h"
 
 namespace incise::contact {
-
-/// Settings of the contact between tissue and tissue.
-struct ContactSettings {
-    bool enabled = true;
-    double friction = 0.0;  ///< Coulomb's coefficient, 0 or more
-    bool self = true;       ///< any surface against any other; false: only faces of cuts
-
-    bool operator==(const ContactSettings&) const = default;
-    static void archive(auto& ar, auto& self) { ar(self.enabled, self.friction, self.self); }
-};
 
 /// Adds the shares of a node of the mesh to the last point of a solver.
 void add_shares(const physics::Model& model, VertexId n, double weight, ContactSolver& solver);

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "incise/cutting/exact/splitter.h"
-#include "incise/fragments/fragment_mesh.h"
+#include "incise/cutting/exact/split.h"
+#include "incise/fragments/fragment_changes.h"
 #include "incise/physics/body/model.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/component_count.h"

@@ -14,8 +14,7 @@
 #include <vector>
 
 #include "incise/base/error.h"
-#include "incise/contact/surface_contact.h"
-#include "incise/cutting/cutter.h"
+#include "incise/contact/contact_settings.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/physics/body/body_arrays.h"
 #include "incise/physics/body/force_term.h"
@@ -26,6 +25,10 @@
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_data.h"
 #include "incise/topology/pose.h"
+
+namespace incise::cutting {
+class Cutter;
+}
 
 namespace incise::sim {
 

@@ -11,6 +11,7 @@
 
 #include "incise/base/archive.h"
 #include "incise/contact/contact.h"
+#include "incise/cutting/cutter.h"
 #include "incise/physics/solve/integrator.h"
 #include "incise/sim/handles.h"
 #include "incise/sim/world.h"

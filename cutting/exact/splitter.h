@@ -8,6 +8,7 @@
 #include "incise/cutting/exact/blade_end.h"
 #include "incise/cutting/exact/cut_front.h"
 #include "incise/cutting/exact/snap_history.h"
+#include "incise/cutting/exact/split.h"
 #include "incise/cutting/exact/suspended_cut.h"
 #include "incise/cutting/surfaces/cut_surface.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
@@ -16,33 +17,6 @@
 #include "incise/topology/mesh.h"
 
 namespace incise::cutting {
-
-/// The default of `snap`. The longest edges of a mesh are about twice as long as the mean, so that
-/// nodes of the cut are off the surface by at most 0.03 of a mean edge.
-inline constexpr double default_snap = 0.015;
-
-/// The options of a cut.
-struct SplitOptions {
-    /// The tolerance of a cut, as a share of an edge that the surface crosses. The range is
-    /// [0, 0.5]. An end of such an edge that is nearer to the surface counts as on it. No node is
-    /// moved. Without a tolerance, a cut leaves parts of any size.
-    double snap = default_snap;
-};
-
-/// The report of a cut.
-struct SplitReport {
-    std::size_t elements_crossed = 0;  ///< elements before the edit that the surface crosses
-    std::size_t nodes_snapped = 0;  ///< nodes before the edit that came to count as on the surface
-    std::size_t edges_divided = 0;
-    std::size_t faces_opened = 0;
-    double cut_area = 0.0;  ///< of one side of the opened faces, at rest, m2
-};
-
-/// An edit by a cut, with its report.
-struct Split {
-    topology::ChangeSet changes;
-    SplitReport report;
-};
 
 /// Divides the tetrahedra that the surface crosses and opens the faces on it, in one transaction.
 ///

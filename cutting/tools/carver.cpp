@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "incise/cutting/surfaces/tissue_motion.h"
+
 namespace incise::cutting {
 
 namespace {

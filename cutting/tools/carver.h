@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "incise/base/types.h"
-#include "incise/cutting/surfaces/tissue_motion.h"
 #include "incise/cutting/tools/shapes.h"
 #include "incise/topology/pose.h"
 
 namespace incise::cutting {
+
+struct TissueMotion;
 
 using CarverShape = std::variant<Sphere, Capsule, Cuboid>;
 

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "incise/base/types.h"
-#include "incise/cutting/exact/splitter.h"
-#include "incise/cutting/surfaces/cut_surface.h"
+#include "incise/cutting/exact/split.h"
 #include "incise/cutting/tools/carver.h"
 #include "incise/topology/surface_data.h"
 
 namespace incise::cutting {
+
+class CutSurface;
 
 /// The way in which a blade cuts. `split` divides the elements that it passes through. `separate`
 /// opens the existing faces that lie nearest to its path.

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <set>
 
+#include "incise/cutting/surfaces/tissue_motion.h"
 #include "incise/topology/box_mesh.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "incise/cutting/cutter.h"
 #include "incise/sim/world.h"
 #include "incise/topology/box_mesh.h"
 #include "support/mesh_families.h"
