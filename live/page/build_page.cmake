@@ -34,7 +34,7 @@ if(NOT NPM)
 endif()
 
 file(COPY ${SOURCE}/ DESTINATION ${BUILD}
-  PATTERN node_modules EXCLUDE PATTERN dist EXCLUDE PATTERN mock EXCLUDE)
+  PATTERN node_modules EXCLUDE PATTERN dist EXCLUDE)
 set(lock ${BUILD}/package-lock.json)
 set(installed ${BUILD}/node_modules/.package-lock.installed)
 file(SHA256 ${lock} wanted)
