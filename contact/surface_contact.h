@@ -18,8 +18,8 @@
 
 namespace incise::contact {
 
-/// Adds the shares of a node of the mesh to the last point of a solver.
-void add_shares(const physics::Model& model, VertexId n, double weight, ContactSolver& solver);
+/// Adds the shares of the nodes that a vertex follows to the last point of a solver.
+void add_shares(const physics::Model& model, VertexId v, double weight, ContactSolver& solver);
 /// The same for a point of the surface, with what ContactSolver::surface_impulses() needs.
 void add_surface_shares(const physics::Model& model, const ContactSolver::OnSurface& at,
                         ContactSolver& solver);

@@ -8,7 +8,7 @@
 namespace incise::fragments {
 
 /// A view of the ids of a list, or of one id that the view has itself.
-/// @lifetime That of the list.
+/// @lifetime That of the list. Iterators also need this object: keep no span of a temporary.
 template <class Id>
 class ListOrOne {
   public:

@@ -15,8 +15,14 @@ namespace {
 /// state without the tool.
 WorldDriver& driver_of(const Tool& tool) {
     WorldDriver& driver = python::driver_of(tool.world);
-    const auto tools = driver.world().tools();
-    if (std::ranges::find(tools, tool.id) == tools.end())
+    const bool is_there = [&] {
+        try {
+            return driver.world().tool(tool.id).name == tool.name;
+        } catch (const InputError&) {
+            return false;
+        }
+    }();
+    if (!is_there)
         throw InputError("tool '" + tool.name +
                          "' is no longer in its world, which was restored to a state without it");
     return driver;

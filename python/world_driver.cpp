@@ -311,8 +311,13 @@ void WorldDriver::restore(std::string_view bytes) {
     scripts_ = std::move(scripts);
     led_ = std::move(led);
     constraints_ = std::move(constraints);
+    const bool fits = led_.size() == world_.tools().size() && led_.size() >= scripts_.size() &&
+                      constraints_.size() == world_.constraints().size();
+    led_.resize(world_.tools().size());
+    constraints_.resize(world_.constraints().size());
     for (std::size_t i = 0; i < constraints_.size(); ++i)
         constraints_[i].id = world_.constraints()[i];
+    if (!fits) refuse("its tools or constraints are not those of its world");
     edits_ = std::move(edits);
     loads_.clear();
     for (const physics::Load& load : world_.model().loads().all()) loads_.push_back(load.name);

@@ -21,7 +21,7 @@
 
 namespace incise::python {
 
-/// The tools that tissue exerts a known force on, in the order of their numbers.
+/// The tools that tissue exerts a known force on, in the order of World::tools().
 struct FeelingTools {
     std::vector<sim::ToolId> ids;
     std::vector<std::string> names;

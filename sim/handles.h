@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,16 +15,22 @@
 
 namespace incise::sim {
 
-/// The id of a thing in a world. It names this thing only: another world refuses it, and so does
-/// its own world after the thing was removed, also if another one has its place. A default id names
-/// nothing. Ids may be kept over save() and restore(): those of the world that was saved go on
-/// naming the same things, also in another world that is restored to its state.
+/// The id of a thing in a world. A default id names nothing.
+///
+/// It names this thing only: another world refuses it, and so does its own world after the thing
+/// was removed, also if another one has its place. Ids may be kept over save() and restore(). Those
+/// of what the state has go on naming it, also in another world that is restored to this state.
+/// Ids of what a restored world no longer has are refused. A restored world cannot tell from where
+/// an id comes that has index and generation of something in the state.
 template <class Tag>
 struct Handle {
     std::uint32_t index = 0;       ///< of the place in its world; free places are used again
-    std::uint32_t world = 0;       ///< number of the world in this process, from 1
+    std::uint32_t world = 0;       ///< number of the world, or of its last restore, from 1
     std::uint32_t generation = 0;  ///< of the thing: each that the world gets has another one
-    bool operator==(const Handle&) const = default;
+    /// True if both name the same thing of one world, also across its restores.
+    bool operator==(const Handle& other) const {
+        return index == other.index && generation == other.generation;
+    }
     static void archive(auto& ar, auto& self) { ar(self.index, self.generation); }
 };
 
@@ -33,7 +40,7 @@ template <class Id>
 class HandleTable {
   public:
     /// @param noun   what the things are called in messages
-    /// @param world  number of the world
+    /// @param world  number of the world, or of its restore
     /// @param count  how many things the list has at first
     HandleTable(const char* noun, std::uint32_t world, std::size_t count = 0)
         : noun_(noun), world_(world) {
@@ -60,16 +67,15 @@ class HandleTable {
     std::size_t position_of(const Id& id) const {
         const std::string thing = std::string(noun_) + " " + std::to_string(id.index);
         if (id.world == 0)
-            throw InputError("there is no " + thing + ": the world has " +
-                             std::to_string(ids_.size()));
+            throw InputError("the id with index " + std::to_string(id.index) + " names no " +
+                             noun_ + ": take one that the world gave");
         const auto found = positions_.find(id.index);
         const bool is_there =
             found != positions_.end() && ids_[found->second].generation == id.generation;
         if (id.world != world_ && !(is_there && id.generation < first_of_own_))
-            throw InputError(thing + " is one of another world; use the id that this world gave");
-        if (!is_there)
-            throw InputError(thing + " is no longer there: it was removed, or the world was " +
+            throw InputError(thing + " is one of another world, or of this one before it was " +
                              "restored to a state without it");
+        if (!is_there) throw InputError(thing + " is no longer there: it was removed");
         return found->second;
     }
     /// Removes the thing from the list. Throws InputError as position_of() does.
@@ -80,22 +86,26 @@ class HandleTable {
         for (std::size_t i = gone; i < ids_.size(); ++i) positions_[ids_[i].index] = i;
     }
 
-    static void archive(auto& ar, auto& self) { ar(self.ids_); }
-    /// Completes a table that was read from an archive. What it adds gets other generations than
-    /// all that the table had which it replaces.
+    static void archive(auto& ar, auto& self) { ar(self.ids_, self.next_); }
+    /// Completes a table that was read from an archive.
     /// @param count  how many things the list has
     /// Throws InputError if the ids cannot be those of a list.
-    void take_over(const HandleTable& former, std::size_t count) {
-        next_ = former.next_;
-        first_of_own_ = 1;
+    void complete(std::size_t count) {
+        // Nobody adds so many things: only other bytes have such numbers.
+        constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max() / 2;
+        bool is_sound = next_ >= 1 && next_ <= most;
+        std::set<std::uint32_t> generations;
         positions_.clear();
         for (std::size_t i = 0; i < ids_.size(); ++i) {
-            ids_[i].world = world_;
-            first_of_own_ = std::max(first_of_own_, ids_[i].generation + 1);
-            positions_[ids_[i].index] = i;
+            Id& id = ids_[i];
+            id.world = world_;
+            is_sound = is_sound && id.index <= most && id.generation >= 1 && id.generation < next_;
+            positions_[id.index] = i;
+            generations.insert(id.generation);
         }
-        next_ = std::max(next_, first_of_own_);
-        if (ids_.size() != count || positions_.size() != count)
+        first_of_own_ = next_;
+        if (!is_sound || ids_.size() != count || positions_.size() != count ||
+            generations.size() != count)
             throw InputError("its ids are not those of what it has");
     }
 

@@ -47,7 +47,7 @@ struct WorldDef {
     std::vector<physics::Material> materials = {};
     /// By region, an index into `materials`. If empty, all regions have the first material.
     std::map<int, std::size_t> material_of_region = {};
-    /// By element id, the direction of the fibres at rest, of unit length. Needed only if a
+    /// By cell id, the direction of the fibres at rest, of unit length. Needed only if a
     /// material has fibres.
     std::vector<Vec3> fibres = {};
     physics::Precision precision = physics::Precision::double_precision;
@@ -142,7 +142,7 @@ class World {
     /// Advances the world by `dt`, s.
     ///
     /// First the tissue moves, while the tools move to their new poses. Then the tools, in the
-    /// order of their ids, cut the tissue that they have met. With Solver::statics the edited body
+    /// order of tools(), cut the tissue that they have met. With Solver::statics the edited body
     /// then moves to its new equilibrium, and tissue that crosses a tool during this motion is cut
     /// too.
     ///
@@ -225,7 +225,8 @@ class World {
     Pose tool_pose(ToolId tool) const;
     const ToolDef& tool(ToolId tool) const;
     std::optional<ToolId> find_tool(std::string_view name) const;
-    /// Returns the tools in the order in which they were added.
+    /// Returns the tools in the order in which they were added. None is ever removed: the index of
+    /// an id is its position here.
     /// @lifetime Until a tool is added or the world is restored.
     std::span<const ToolId> tools() const;
 

@@ -27,7 +27,7 @@ double read_time(ArchiveReader& ar) {
 }  // namespace
 
 World::Parts::Parts(const Parts& former, ArchiveReader& ar)
-    : number(former.number),
+    : number(next_number()),
       mesh(topology::load_mesh(ar)),
       time(read_time(ar)),
       model(mesh, former.model.elements().materials(), ar, time),
@@ -40,9 +40,11 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
     ledger.restore(ar);
     ar(cutter, tool_ids, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval,
        has_moved, has_failed);
-    tool_ids.take_over(former.tool_ids, tools.size());
-    constraints.take_over(former.constraints, model.num_constraints());
-    loads.take_over(former.loads, model.loads().all().size());
+    tool_ids.complete(tools.size());
+    for (std::size_t i = 0; i < tools.size(); ++i)
+        if (tool_ids.all()[i].index != i) throw InputError("its tools have ids of others");
+    constraints.complete(model.num_constraints());
+    loads.complete(model.loads().all().size());
     if (ar.read<bool>() != (contact != nullptr))
         throw InputError(
             "the world that was saved has contact, and this one has not, or the other "

@@ -18,6 +18,10 @@
 
 namespace incise::sim {
 
+/// Returns the number of a new world, or of a restore. Ids have it, so that a world refuses those
+/// of another one, and those of what it has forgotten.
+std::uint32_t next_number();
+
 std::unique_ptr<physics::Integrator> make_integrator(Solver solver, contact::Contact* contact);
 
 /// When the stable step is computed anew: docs/theory.md, Stable step. The computation takes about
@@ -132,7 +136,7 @@ struct World::Parts {
     static void require_sound_pose(const Tool& tool, const Pose& pose);
     static void require_pose(const Tool& tool);
 
-    std::uint32_t number;  // of the world in this process
+    std::uint32_t number;  // see next_number()
     topology::Mesh mesh;
     double time = 0.0;
     physics::Model model;

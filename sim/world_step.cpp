@@ -21,12 +21,6 @@ using topology::Mesh;
 
 namespace {
 
-/// Returns the number of a new world. Ids have it, so that a world refuses those of another one.
-std::uint32_t next_number() {
-    static std::atomic<std::uint32_t> last = 0;
-    return ++last;
-}
-
 Mesh mesh_of(std::variant<topology::MeshData, Mesh> mesh) {
     if (auto* built = std::get_if<Mesh>(&mesh)) return std::move(*built);
     return Mesh::build(std::get<topology::MeshData>(mesh)).mesh;
@@ -43,6 +37,12 @@ physics::MaterialTable materials_of(WorldDef& def, const Mesh& mesh) {
 }
 
 }  // namespace
+
+std::uint32_t next_number() {
+    // The one thing that worlds share: no result depends on it, and no bytes hold it.
+    static std::atomic<std::uint32_t> last = 0;
+    return ++last;
+}
 
 std::unique_ptr<physics::Integrator> make_integrator(Solver solver, contact::Contact* contact) {
     if (solver == Solver::statics) return std::make_unique<physics::Statics>();

@@ -15,9 +15,9 @@ namespace incise::physics {
 
 /// The parts of a body that a force term may read.
 ///
-/// Forces act on the nodes of the fragments: these have masses and positions of their own. The
-/// nodes of the mesh follow them; FragmentMesh::embedding gives their weights. Before the first
-/// cut, both have the same ids.
+/// Forces act on the nodes of the physics: these have masses and positions of their own. The
+/// vertices of the mesh follow them; FragmentMesh::embedded() gives their weights. Before the first
+/// cut, both have the same numbers.
 struct BodyView {
     const topology::Mesh& mesh;
     const fragments::FragmentMesh& fragments;

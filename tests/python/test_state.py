@@ -87,6 +87,27 @@ class State(unittest.TestCase):
         with self.assertRaisesRegex(incise.InputError, "no longer in its world"):
             hand.release()
 
+    def test_a_tool_leads_no_other_tool(self) -> None:
+        body = support.world()
+        empty = body.save()
+        knife = body.add_tool("knife", support.BLADE)
+        with_knife = body.save()
+        other = support.world()
+        probe = other.add_tool("probe", support.BLADE)
+        other.restore(with_knife)
+        with self.assertRaisesRegex(incise.InputError, "no longer in its world"):
+            probe.pose = incise.Pose()
+        other.tools["knife"].pose = incise.Pose()
+        body.restore(empty)
+        again = body.add_tool("knife", support.BLADE)
+        with self.assertRaisesRegex(incise.InputError, "no longer in its world"):
+            knife.pose = incise.Pose()
+        again.pose = incise.Pose()
+        # What was done anew gives the same bytes.
+        body.restore(empty)
+        body.add_tool("knife", support.BLADE)
+        self.assertEqual(body.save(), with_knife)
+
     def test_a_failed_world_goes_back(self) -> None:
         # Two blocks: the plane meets hexahedra, which it cannot divide.
         tets = incise.Mesh.box([1, 1, 1], [1, 1, 1])

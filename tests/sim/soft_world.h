@@ -128,7 +128,7 @@ class Session {
     World world_;
     ToolId knife_{};
     ConstraintId grasp_{};
-    LoadId load_{0};
+    LoadId load_{};
 };
 
 }  // namespace incise::sim

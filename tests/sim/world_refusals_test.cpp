@@ -24,8 +24,8 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
         {[&] { world.step(nan); }, "it must be above 0"},
         {[&] { world.step(1.01 * bound); }, "is above the stable step of"},
         {[&] { world.step_to(world.time()); }, "it must go forward"},
-        {[&] { world.set_tool_pose({7}, {}); }, "there is no tool 7"},
-        {[&] { world.withdraw_tool({3}); }, "there is no tool 3"},
+        {[&] { world.set_tool_pose({7}, {}); }, "names no tool"},
+        {[&] { world.withdraw_tool({3}); }, "names no tool"},
         {[&] { world.place_tool(world.tools()[0], {}); }, "withdraw it before it is put elsewhere"},
         {[&] {
              world.set_tool_pose(world.tools()[0], at({nan, 0, 0}));
@@ -57,9 +57,9 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
         {[&] { world.add_constraint({.name = "none"}); }, "it has no node"},
         {[&] { world.grasp("hand", {VertexId(99999)}, {}); }, "there is no node 99999"},
         {[&] { world.set_grasp_pose(world.constraints()[0], {}); }, "is no grasp"},
-        {[&] { world.set_grasp_pose({9}, {}); }, "there is no constraint 9"},
-        {[&] { world.release({9}); }, "there is no constraint 9"},
-        {[&] { world.remove_load({4}); }, "there is no load 4"},
+        {[&] { world.set_grasp_pose({9}, {}); }, "names no constraint"},
+        {[&] { world.release({9}); }, "names no constraint"},
+        {[&] { world.remove_load({4}); }, "names no load"},
         {[&] {
              world.add_load(
                  {.name = "wind", .kind = physics::TractionLoad{{{{CellId(3), 9}}}, {}}});
@@ -113,6 +113,8 @@ TEST(World, RefusesIdsOfWhatItDoesNotHave) {
     world.release(removed);
     const ConstraintId hand = hold(world);
     EXPECT_EQ(hand.index, removed.index);
+    EXPECT_NE(input_error_of([&] { world.release(removed); }).find("is no longer there"),
+              std::string::npos);
     const std::string saved = world.save();
     // A restored world gives the place of what it has forgotten to others.
     const ToolId forgotten = add_plane(world);
@@ -125,13 +127,13 @@ TEST(World, RefusesIdsOfWhatItDoesNotHave) {
 
     const ToolId plane_of_other = add_plane(other);
     const std::vector<std::pair<std::function<void()>, const char*>> misuses = {
-        {[&] { world.set_grasp_pose(removed, Pose()); }, "is no longer there"},
-        {[&] { world.release(removed); }, "is no longer there"},
-        {[&] { world.set_tool_pose(forgotten, Pose()); }, "is no longer there"},
-        {[&] { world.set_load_factor(forgotten_load, 2.0); }, "is no longer there"},
+        {[&] { world.set_grasp_pose(removed, Pose()); }, "restored to a state without it"},
+        {[&] { world.release(removed); }, "restored to a state without it"},
+        {[&] { world.set_tool_pose(forgotten, Pose()); }, "restored to a state without it"},
+        {[&] { world.set_load_factor(forgotten_load, 2.0); }, "restored to a state without it"},
         {[&] { world.withdraw_tool(plane_of_other); }, "of another world"},
         {[&] { other.release(hand); }, "of another world"},
-        {[&] { world.set_tool_pose(ToolId(), Pose()); }, "there is no tool 0"}};
+        {[&] { world.set_tool_pose(ToolId(), Pose()); }, "names no tool"}};
     for (const auto& [misuse, why] : misuses) {
         const std::string message = input_error_of(misuse);
         EXPECT_NE(message.find(why), std::string::npos) << message << " for " << why;
