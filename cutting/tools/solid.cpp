@@ -68,6 +68,7 @@ std::vector<std::vector<std::size_t>> parts_inside_out(const SurfaceData& surfac
     const auto parts = parts_of(surface);
     const auto corners_of = [&](const std::vector<std::size_t>& part) {
         std::vector<Corners> corners;
+        corners.reserve(part.size());
         for (const std::size_t t : part) corners.push_back(surface.triangles[t]);
         return corners;
     };
