@@ -37,7 +37,7 @@ class EdgeContact {
     void find(const SurfaceTree& tree, const ContactBody& body, std::span<const Vec3> positions,
               double reach);
     /// Finds anew the pairs with edges at some nodes, and keeps the others.
-    /// @param is_moved  by node id, 1: edges there are found anew
+    /// @param is_moved  by vertex id, 1: edges there are found anew
     /// @param is_near   likewise, 1: edges there may have such edges near them
     void find_again(const SurfaceTree& tree, const ContactBody& body,
                     std::span<const Vec3> positions, double reach,
@@ -115,14 +115,14 @@ class EdgeContact {
     std::vector<Vec3> last_positions_;  // of nodes_, by id, m
     double max_penetration_ = 0.0;
     std::size_t first_point_ = 0;            // in the solver, that of the first in touching_
-    std::vector<double> moves_;              // scratch, by node id: in the last step, m
+    std::vector<double> moves_;              // scratch, by vertex id: in the last step, m
     std::vector<Pair> found_;                // scratch
     std::vector<Touching> did_touch_;        // scratch
     std::vector<std::uint32_t> near_;        // scratch
     std::vector<Box> boxes_;                 // scratch, by edge of near_
     std::vector<NodeId> around_;             // scratch
     std::vector<CellId> star_;               // scratch
-    std::vector<std::uint8_t> is_followed_;  // scratch, by node id
+    std::vector<std::uint8_t> is_followed_;  // scratch, by vertex id
     std::array<std::vector<std::uint32_t>, 2> sharp_again_;  // scratch of find_again()
     std::size_t num_tested_ = 0;
 };

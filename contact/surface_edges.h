@@ -30,14 +30,14 @@ struct SurfaceEdge {
 };
 
 /// Returns the normal of a triangle, outward, of the length of twice its area, m2.
-/// @param x  positions by node id, m
+/// @param x  positions by vertex id, m
 Vec3 area_of(const Triangle& triangle, std::span<const Vec3> x);
 
 /// The edges of a surface, in ascending order of their nodes.
 class SurfaceEdges {
   public:
     /// Takes the edges of triangles. Cost: O(n log n).
-    /// @param rest_positions  by node id, m: they tell which edges are sharp
+    /// @param rest_positions  by vertex id, m: they tell which edges are sharp
     void set_triangles(std::span<const Triangle> triangles, std::span<const Vec3> rest_positions);
 
     const SurfaceEdge& operator[](std::uint32_t edge) const { return edges_[edge]; }

@@ -36,9 +36,9 @@ class SurfaceTree {
   public:
     /// Sets the triangles anew. Cost: O(n log n) in the number of triangles.
     /// @param triangles       of node ids
-    /// @param rest_positions  by node id, m
+    /// @param rest_positions  by vertex id, m
     void set_triangles(std::span<const Triangle> triangles, std::span<const Vec3> rest_positions);
-    /// Sets the boxes for new positions, by node id, m. Cost: O(n).
+    /// Sets the boxes for new positions, by vertex id, m. Cost: O(n).
     void fit(std::span<const Vec3> positions);
 
     /// Calls visit(t) for each triangle whose box overlaps `box`, and whose normal differs from one

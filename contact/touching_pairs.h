@@ -66,8 +66,8 @@ class TouchingPairs {
     /// The part of a surface that has moved by more than the rest.
     struct MovedPart {
         std::span<const std::uint8_t> is_triangle;  ///< by triangle, 1: it belongs to the part
-        std::span<const std::uint8_t> is_node;      ///< likewise, by node id
-        std::span<const std::uint8_t> is_near;      ///< by node id, 1: it may be near the part
+        std::span<const std::uint8_t> is_node;      ///< likewise, by vertex id
+        std::span<const std::uint8_t> is_near;      ///< by vertex id, 1: it may be near the part
     };
     /// Finds anew the pairs with a part of the surface, and keeps the others. Cost: O(n) and that
     /// of the pairs with the part.

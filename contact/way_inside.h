@@ -13,7 +13,7 @@ namespace incise::contact {
 /// True if the straight way from a triangle of the surface to a point behind it stays within the
 /// body, and the point is not on its surface. Faces with four corners count as two triangles. Cost:
 /// O(1) in the elements along the way.
-/// @param positions  present ones, by node id, m
+/// @param positions  present ones, by vertex id, m
 /// @param face       of the triangle, on the boundary
 /// @param triangle   its nodes
 /// @param weights    of the corners at the point where the way begins. It is moved a little towards

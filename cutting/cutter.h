@@ -39,7 +39,7 @@ struct CutId {
 ///     model.apply(mesh, done.changes);
 ///     cutter.apply(mesh, done.changes);
 ///
-/// Positions are current ones by node id, m. The cutter has its own record of them, and all cuts
+/// Positions are current ones by vertex id, m. The cutter has its own record of them, and all cuts
 /// read that record. Each motion begins where the last one has ended. A node may be anywhere, but
 /// it must not change its position between two motions: a blade's edge would not sweep that change,
 /// and would cross an edge of the mesh twice, or never. The owner of the body gives nodes other
@@ -148,7 +148,7 @@ class Cutter {
     topology::ElementBoxes boxes_;
     SnapHistory snap_history_;
     std::vector<Cut> cuts_;  // by CutId
-    // Positions before and after the last motion, by node id.
+    // Positions before and after the last motion, by vertex id.
     topology::NodeField<VertexId, Vec3> before_, now_;
     OwnEdit own_edit_;
 };

@@ -52,9 +52,10 @@ class FragmentMesh {
     explicit FragmentMesh(const topology::Mesh& material, double light_share = default_light_share,
                           std::span<const VertexId> held = {});
 
-    /// Sets the nodes of the material whose positions are prescribed. No fragment with material at
-    /// one of them is light, so that it stays where it is held. A node that an edit makes of held
-    /// ones only is held as well. Fragments that exist stay as they are until an edit beside them.
+    /// Sets the vertices of the material whose positions are prescribed. No fragment with material
+    /// at one of them is light, so that it stays where it is held. A vertex that an edit makes of
+    /// held ones only is held as well. Fragments that exist stay as they are until an edit beside
+    /// them.
     void hold(std::span<const VertexId> vertices);
     /// Follows an edit of the material, and returns what it did to the fragments.
     /// Throws InputError, and changes nothing, for an edit out of turn.

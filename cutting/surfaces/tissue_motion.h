@@ -11,7 +11,7 @@
 
 namespace incise::cutting {
 
-/// The body during one step. Nodes move straight from `before` to `after`, m, by node id.
+/// The body during one step. Nodes move straight from `before` to `after`, m, by vertex id.
 /// @lifetime  the mesh, the positions and the boxes must outlive the object
 struct TissueMotion {
     const topology::Mesh& mesh;
