@@ -34,7 +34,7 @@ void measure(benchmark::State& state, Edit edit) {
         const auto done = model.apply(mesh, changes);
         state.PauseTiming();
         topology::replay(mesh, topology::inverse(changes));
-        model.undo(mesh, changes, done);
+        model.apply(mesh, inverse(done));
         first = (first + batch) % (mesh.element_capacity() - batch);
         state.ResumeTiming();
     }
@@ -121,20 +121,19 @@ void split(benchmark::State& state) {
         cutting::Cutter cutter(mesh, model.mesh_positions());
         const cutting::CutId cut = cutter.begin_cut(cutting::default_snap);
         state.ResumeTiming();
-        std::vector<std::pair<topology::ChangeSet, physics::ModelChanges>> history;
+        std::vector<physics::BodyEdit> history;
         for (int step = 0; step < num_steps; ++step) {
             auto done = cutter.split(cut, mesh, edge(step), edge(step + 1));
-            auto of_model = model.apply(mesh, done.changes);
+            history.push_back(model.apply(mesh, done.changes));
             cutter.apply(mesh, done.changes);
             crossed += static_cast<double>(done.report.elements_crossed);
-            history.emplace_back(std::move(done.changes), std::move(of_model));
         }
         state.PauseTiming();
         for (; !history.empty(); history.pop_back()) {
-            const auto& [changes, of_model] = history.back();
-            if (changes.is_empty()) continue;
-            topology::replay(mesh, topology::inverse(changes));
-            model.undo(mesh, changes, of_model);
+            const physics::BodyEdit back = inverse(history.back());
+            if (back.is_empty()) continue;
+            topology::replay(mesh, back.material);
+            model.apply(mesh, back);
         }
         state.ResumeTiming();
     }

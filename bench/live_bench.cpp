@@ -67,10 +67,11 @@ int main(int argc, char** argv) {
             pictures.show("von_mises");
             pictures.make(session);
             valued.push_back(microseconds([&] { pictures.make(session); }));
-            if (i % 20 == 0) states.push_back(microseconds([&] { session.save(); }));
+            if (i % 20 == 0) states.push_back(microseconds([&] { session.moment(); }));
         }
     };
     run(60, false);
+    const live::Session::Moment before = session.moment();
     session.execute(live::order_from_json(
         R"({"add":"blade","tool":{"kind":"blade","edge":[[0,0,)" + edge + "],[0,0,-" + edge +
         R"(]]},"at":[)" + std::to_string(at(0).position.x()) + "," +
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
     print("a picture", still);
     print("a picture after edits, with the topology", edited);
     print("a picture with a field of elements", valued);
-    print("a state to go back to", states);
+    print("a moment to go back to", states);
+    print("the undo of the stroke", {microseconds([&] { session.undo(before); })});
     print("the checksum of a tick", checksums);
 }

@@ -53,4 +53,7 @@ struct FragmentChanges {
     bool operator==(const FragmentChanges&) const = default;
 };
 
+/// Returns the changes that take `changes` back.
+FragmentChanges inverse(FragmentChanges changes);
+
 }  // namespace incise::fragments

@@ -159,18 +159,15 @@ void FragmentMesh::hold_new_nodes(const ChangeSet& changes) {
     }
 }
 
-void FragmentMesh::undo(const Mesh& material, const FragmentChanges& changes) {
-    const auto& edit = changes.mesh;
+void FragmentMesh::go_back(const Mesh& material, const FragmentChanges& back) {
+    const FragmentMeshChanges& edit = back.mesh;
     if (edit.epoch_before == edit.epoch_after) return;
-    FragmentMeshChanges back;
-    back.epoch_before = edit.epoch_after;
-    back.epoch_after = edit.epoch_before;
-    epoch_.advance(material, back, "fragment mesh");
+    epoch_.advance(material, edit, "fragment mesh");
 
-    for (const CarriedCell& cell : changes.cells) {
+    for (const CarriedCell& cell : back.cells) {
         if (cell.from.is_valid() && cell.to.is_valid()) continue;
         std::vector<CellId>& cells = entry_of(cells_of_carrier_, cell.carrier);
-        if (cell.from.is_valid())
+        if (cell.to.is_valid())
             cells.insert(std::ranges::upper_bound(cells, cell.cell), cell.cell);
         else
             std::erase(cells, cell.cell);
@@ -181,31 +178,31 @@ void FragmentMesh::undo(const Mesh& material, const FragmentChanges& changes) {
         for (const auto& record : *records) carriers.push_back(carrier(record.id));
     for (const auto& rewiring : edit.rewired)
         corners_[corner_begin_[rewiring.element.index()] +
-                 static_cast<std::size_t>(rewiring.corner)] = rewiring.from;
-    for (const auto& record : edit.elements_removed) is_alive_[record.id.index()] = 1;
-    for (const auto& record : edit.elements_added) is_alive_[record.id.index()] = 0;
-    for (const ShareChange& share : changes.shares) shares_[share.fragment.index()] = share.from;
-    for (const auto& record : edit.nodes_removed) is_node_alive_[record.id.index()] = 1;
-    for (const CarriedCell& cell : changes.cells) {
-        move_cell(cell.cell, cell.to, cell.from);
-        set_carried_around(cell.cell, cell.was_around);
+                 static_cast<std::size_t>(rewiring.corner)] = rewiring.to;
+    for (const auto& record : edit.elements_added) is_alive_[record.id.index()] = 1;
+    for (const auto& record : edit.elements_removed) is_alive_[record.id.index()] = 0;
+    for (const ShareChange& share : back.shares) shares_[share.fragment.index()] = share.to;
+    for (const auto& record : edit.nodes_added) is_node_alive_[record.id.index()] = 1;
+    for (const CarriedCell& cell : back.cells) {
+        move_cell(cell.cell, cell.from, cell.to);
+        set_carried_around(cell.cell, cell.is_around);
     }
     for (const CarrierId of : carriers) {
         std::vector<ElementId> living;
         for (const ElementId known : fragments_of(of))
             if (is_alive(known)) living.push_back(known);
-        for (const auto& record : edit.elements_removed)
+        for (const auto& record : edit.elements_added)
             if (carrier(record.id) == of && std::ranges::find(living, record.id) == living.end())
                 living.push_back(record.id);
         std::ranges::sort(living);
         set_fragments(of, std::move(living));
     }
-    for (const auto& record : edit.elements_added) cells_of_fragment_.erase(record.id);
-    num_elements_ += edit.elements_removed.size();
-    num_elements_ -= edit.elements_added.size();
-    num_nodes_ += edit.nodes_removed.size();
-    num_nodes_ -= edit.nodes_added.size();
-    truncate(edit.node_capacity_before, edit.element_capacity_before, material.element_capacity());
+    for (const auto& record : edit.elements_removed) cells_of_fragment_.erase(record.id);
+    num_elements_ += edit.elements_added.size();
+    num_elements_ -= edit.elements_removed.size();
+    num_nodes_ += edit.nodes_added.size();
+    num_nodes_ -= edit.nodes_removed.size();
+    truncate(edit.node_capacity_after, edit.element_capacity_after, material.element_capacity());
     is_held_.resize(material.node_capacity());
 }
 

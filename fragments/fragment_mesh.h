@@ -64,10 +64,10 @@ class FragmentMesh {
     /// Takes back an edit that apply() has followed, with all its ids: those that it gave out are
     /// free again.
     /// @param material  the material, on which the inverse of the edit was replayed
-    /// @param changes   what apply() returned
+    /// @param back      the inverse of what apply() returned
     /// Throws InputError, and changes nothing, unless the edit is the last one.
     /// Cost: proportional to the edit.
-    void undo(const topology::Mesh& material, const FragmentChanges& changes);
+    void go_back(const topology::Mesh& material, const FragmentChanges& back);
 
     /// Returns the epoch of the material that the fragments are those of.
     std::uint64_t epoch() const { return epoch_.value(); }
@@ -93,6 +93,10 @@ class FragmentMesh {
     int corner_of(ElementId e, NodeId n) const;
     /// True if the position of a node of the material is prescribed; see hold().
     bool is_held(VertexId n) const { return is_held_[n.index()] != 0; }
+    /// Returns is_held() of all vertices, and sets it again.
+    /// @pre  set_held(): there is one for each vertex of the material, also for those removed
+    std::span<const std::uint8_t> held() const { return is_held_; }
+    void set_held(std::vector<std::uint8_t> held) { is_held_ = std::move(held); }
     /// Returns the volume that the fragment carries over that of its carrier. It is exactly 1 for a
     /// carrier that is whole, or cut in part. It exceeds 1 if cells of others outweigh those that
     /// are missing.

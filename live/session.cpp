@@ -57,6 +57,9 @@ Session::Session(scenario::Scenario scenario, double tick, std::uint64_t num_tic
       element_size_(topology::mean_element_length(simulation_.mesh())) {
     for (const VertexId n : simulation_.mesh().nodes())
         box_.extend(simulation_.mesh().rest_position(n));
+    ArchiveWriter state;
+    simulation_.save(state);
+    start_ = state.take();
 }
 
 const LedTool* Session::find(const std::string& name) const {
@@ -249,18 +252,24 @@ void Session::add_forces(std::span<const sim::ToolState> states, double weight) 
     }
 }
 
-Session::Moment Session::save() const {
-    ArchiveWriter state;
-    simulation_.save(state);
-    return {num_ticks_, state.take(), tools_, orders_};
+Session::Moment Session::moment() const {
+    return {num_ticks_, simulation_.moment(), tools_, orders_};
 }
 
-void Session::restore(const Moment& moment) {
-    ArchiveReader state(moment.state);
-    simulation_.restore(state);
+void Session::undo(const Moment& moment) {
+    simulation_.undo(moment.state);
     num_ticks_ = moment.num_ticks;
     tools_ = moment.tools;
     orders_ = moment.orders;
+    last_orders_.clear();
+}
+
+void Session::reset() {
+    ArchiveReader state(start_);
+    simulation_.restore(state);
+    num_ticks_ = 0;
+    tools_.clear();
+    orders_.clear();
     last_orders_.clear();
 }
 

@@ -41,7 +41,7 @@ struct LedTool {
 /// The same orders between the same ticks give the same bits, on any number of threads: that is
 /// what a recording is (recording.h).
 ///
-/// A session can be moved to a state that it was in: save(), restore().
+/// A session can go back to a moment that it was in: moment(), undo(), reset().
 class Session {
   public:
     /// Builds the body. Throws as runner::Simulation.
@@ -83,17 +83,20 @@ class Session {
     /// Returns a tool by name, or null.
     const LedTool* find(const std::string& name) const;
 
-    /// The state between two ticks.
+    /// A moment between two ticks.
     struct Moment {
         std::uint64_t num_ticks;
-        std::string state;
+        runner::Simulation::Moment state;
         std::vector<LedTool> tools;
         std::vector<Order> orders;  ///< executed since the last tick
     };
-    /// Returns the present state. Cost: as World::save().
-    Moment save() const;
-    /// Goes to a state of this session. The same bits go on. Cost: as World::restore().
-    void restore(const Moment& moment);
+    /// Returns the present moment. Cost: as World::undo_point().
+    Moment moment() const;
+    /// Goes back to a moment of this session; those after it are lost. The same bits go on.
+    /// Throws InputError, and changes nothing, for a lost moment. Cost: as World::undo().
+    void undo(const Moment& moment);
+    /// Goes back to the start. All moments are lost. Cost: as World::restore().
+    void reset();
 
     /// Returns a number that depends on all bits of positions and velocities. Cost: O(#nodes).
     std::uint64_t checksum() const;
@@ -113,6 +116,7 @@ class Session {
     double tick_;
     std::uint64_t last_tick_;
     runner::Simulation simulation_;
+    std::string start_;  // state of the simulation
     std::string why_no_contact_;
     double element_size_;
     Eigen::AlignedBox3d box_;  // of the body at the start

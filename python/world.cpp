@@ -95,7 +95,22 @@ Constraint grasp(const World& world, const std::string& name, const py::object& 
 
 }  // namespace
 
+namespace {
+void register_undo_point(py::module_& module) {
+    py::class_<UndoPoint, std::shared_ptr<UndoPoint>> type(
+        module, "UndoPoint", "A moment of a World, to which World.undo() can go back.");
+    type.attr("__module__") = "incise";
+    forbid_copies(type, "keep it as it is");
+    type.def("__repr__", held(+[](const UndoPoint& point) {
+                 std::ostringstream text;
+                 text << "<incise.UndoPoint at t = " << point.time << " s>";
+                 return text.str();
+             }));
+}
+}  // namespace
+
 void register_world(py::module_& module) {
+    register_undo_point(module);
     register_physics(module);
     register_surface(module);
     register_view(module);
@@ -171,7 +186,7 @@ Raises InputError with all faults of scenario and mesh. What is unusual becomes 
         .def_property_readonly(
             "topology_version",
             [](const World& world) { return driver_of(world).topology_version(); },
-            "A number that changes with each edit of the mesh and with each restore().")
+            "A number that changes with each edit of the mesh, and with each restore() and undo().")
         .def_property_readonly(
             "has_failed", [](const World& world) { return driver_of(world).world().has_failed(); },
             "True after a step that failed: the world can be read and restored, but not stepped.")
@@ -255,8 +270,8 @@ cut: after a cut these follow the nodes here, and their sums are others by a few
         .def("view", &view,
              R"(Return a View: arrays without a copy, read-only, in a with statement.
 
-step(), run_until() and restore() raise BufferError while it is open or one of its arrays is kept.
-After nodes have been removed, the arrays are copies.
+step(), run_until(), restore() and undo() raise BufferError while it is open or one of its arrays
+is kept. After nodes have been removed, the arrays are copies.
 
 >>> world = incise.World(mesh={"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}},
 ...                      materials=[{"density": 1000, "young": 1e5, "poisson": 0.4}])
@@ -366,10 +381,51 @@ are held too. Raises InputError if another constraint holds a node otherwise.)")
                 without_gil(world, [&](WorldDriver& driver) { driver.restore(bytes); });
             },
             py::arg("data"),
-            R"(Go back to a state that save() has returned, in this world or another one.
+            R"(Go to a state that save() has returned, in this world or another one.
 
 Later steps then give the same bits. The other world needs the same materials, solver and scenario
 tools; its mesh may be another. Raises InputError, and changes nothing, for other bytes.)")
+        .def(
+            "undo_point",
+            [](const World& world) {
+                return without_gil(world, [](WorldDriver& driver) {
+                    return std::make_shared<UndoPoint>(driver.undo_point());
+                });
+            },
+            R"(Return the present moment, an UndoPoint, to which undo() can go back.
+
+It costs about a step, much less than save(): the world keeps the edits since then, until all points
+from before them are gone.)")
+        .def(
+            "undo",
+            [](const World& world, const std::shared_ptr<UndoPoint>& point) {
+                require_no_views(world);
+                without_gil(world, [&](WorldDriver& driver) { driver.undo(*point); });
+            },
+            py::arg("point").none(false),
+            R"(Go back to a moment of this world: take back all cuts since then, and give body, tools,
+constraints, loads and time what they had.
+
+point: from undo_point(). save() then returns the bytes of that moment, and later steps give the
+same bits. It costs what the edits since then cost, and some steps: tens of times less than
+restore(). It also brings a world back that has failed. The same point can be used again.
+
+Raises InputError, and changes nothing, for a point of another world, for one after an edit that was
+taken back, and for one from before restore().
+
+>>> world = incise.World(
+...     mesh={"box": {"size": [0.1, 0.02, 0.02], "cells": [5, 1, 1]}},
+...     materials=[{"density": 1000, "young": 1e5, "poisson": 0.4}])
+>>> before = world.undo_point()
+>>> knife = world.add_tool("knife", {"kind": "carver", "shape": {"sphere": {"radius": 0.01}}})
+>>> knife.place(incise.Pose([0.1, 0.01, 0.01]))
+>>> _ = world.step()
+>>> len(world.edits())
+1
+>>> world.undo(before)
+>>> world.edits(), world.tools
+([], {})
+)")
         .def("write_vtu", &write_vtu, py::arg("path"),
              "Write the present state to a file for ParaView, as a frame of `incise run`.\n"
              "path: ends in .vtu. Raises OutputError if it cannot be written.")

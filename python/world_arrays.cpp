@@ -272,7 +272,7 @@ void register_view(py::module_& module) {
         R"(Arrays that show the memory of a world: see World.view().
 
 They are valid inside the with statement. An array that is kept longer still never dangles: it keeps
-the world alive, and step(), run_until() and restore() raise BufferError until it is gone.)");
+the world alive, and step(), run_until(), restore() and undo() raise BufferError until it is gone.)");
     type.attr("__module__") = "incise";
     forbid_copies(type, "copy its arrays");
     type.def(

@@ -264,12 +264,31 @@ Report WorldDriver::run_until(double time, const Poll& poll) {
 
 namespace {
 constexpr std::string_view mark = "Incise state";
+
+[[noreturn]] void refuse(const std::string& why) {
+    throw InputError("these bytes are no state of this world: " + why);
+}
 }  // namespace
+
+void WorldDriver::save_rest(ArchiveWriter& ar) const {
+    ar(std::uint64_t{scripts_.size()}, last_step_, scripts_, led_, constraints_, edits_);
+}
+
+UndoPoint WorldDriver::undo_point() const {
+    ArchiveWriter ar;
+    save_rest(ar);
+    return {world_.undo_point(), ar.take(), world_.time()};
+}
+
+void WorldDriver::undo(const UndoPoint& point) {
+    ArchiveReader ar(point.driver);
+    restore_rest(ar, [&] { world_.undo(point.world); });
+}
 
 std::string WorldDriver::save() const {
     ArchiveWriter ar;
-    ar(world_.save(), std::uint64_t{scripts_.size()}, last_step_, scripts_, led_, constraints_,
-       edits_);
+    ar(world_.save());
+    save_rest(ar);
     const std::string& bytes = ar.bytes();
     ArchiveWriter head;
     head(std::string(mark), sim::World::state_format, checksum(bytes));
@@ -277,9 +296,6 @@ std::string WorldDriver::save() const {
 }
 
 void WorldDriver::restore(std::string_view bytes) {
-    const auto refuse = [](const std::string& why) {
-        throw InputError("these bytes are no state of this world: " + why);
-    };
     ArchiveReader head(bytes);
     std::string name;
     std::uint32_t format = 0;
@@ -293,10 +309,14 @@ void WorldDriver::restore(std::string_view bytes) {
     const std::string_view body = bytes.substr(head_size);
     if (checksum(body) != sum) refuse("they are damaged");
     ArchiveReader ar(body);
-    std::string state;
+    const auto state = ar.read<std::string>();
+    restore_rest(ar, [&] { world_.restore(state); });
+}
+
+void WorldDriver::restore_rest(ArchiveReader& ar, const std::function<void()>& restore_world) {
     std::uint64_t num_scripts = 0;
     double last = 0.0;
-    ar(state, num_scripts, last);
+    ar(num_scripts, last);
     if (num_scripts != scripts_.size())
         refuse("the scenario of the saved world has " + std::to_string(num_scripts) +
                " tools, and this one " + std::to_string(scripts_.size()));
@@ -306,7 +326,7 @@ void WorldDriver::restore(std::string_view bytes) {
     std::vector<sim::EditRecord> edits;
     ar(scripts, led, constraints, edits);
     const std::uint64_t version = topology_version();
-    world_.restore(state);
+    restore_world();
     last_step_ = last;
     scripts_ = std::move(scripts);
     led_ = std::move(led);

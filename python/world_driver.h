@@ -16,6 +16,7 @@
 #include "incise/scenario/body.h"
 #include "incise/scenario/document.h"
 #include "incise/scenario/scenario.h"
+#include "incise/sim/undo_point.h"
 #include "incise/sim/world.h"
 #include "incise/topology/pose.h"
 
@@ -47,6 +48,13 @@ struct NamedConstraint {
     std::optional<Pose> target;     ///< of a grasp, at the end of the next call
     std::optional<Pose> from = {};  ///< of a grasp with a target, at the beginning of the call
     static void archive(auto& ar, auto& self) { ar(self.name, self.pose, self.target); }
+};
+
+/// A moment of a driver to which it can go back: see sim::UndoPoint.
+struct UndoPoint {
+    sim::UndoPoint world;
+    std::string driver;  ///< what the driver remembers beside the world
+    double time = 0.0;   ///< s
 };
 
 /// A world, its scenario, and what leads its tools.
@@ -89,7 +97,7 @@ class WorldDriver {
     /// Returns the length of the last step, s; 0 before the first.
     double last_step() const { return last_step_; }
     const std::vector<sim::EditRecord>& edits() const { return edits_; }
-    /// Returns a number that differs after each edit and each restore.
+    /// Returns a number that differs after each edit, restore() and undo().
     std::uint64_t topology_version() const { return version_base_ + world_.mesh().epoch(); }
 
     bool is_scripted(sim::ToolId tool) const { return tool.index < scripts_.size(); }
@@ -122,6 +130,10 @@ class WorldDriver {
     const physics::Load& load(const std::string& name) const;
     void set_load_factor(const std::string& name, double factor);
 
+    UndoPoint undo_point() const;
+    /// Throws InputError, and changes nothing, as World::undo() does.
+    void undo(const UndoPoint& point);
+
     std::string save() const;
     /// Throws InputError, and changes nothing, for other bytes than those of save() in a world of
     /// the same materials, solver and scenario tools.
@@ -139,6 +151,8 @@ class WorldDriver {
             ar(self.from, self.target, self.leaves, self.length_from, self.length_target);
         }
     };
+    void save_rest(ArchiveWriter& ar) const;
+    void restore_rest(ArchiveReader& ar, const std::function<void()>& restore_world);
     void require_led(sim::ToolId tool) const;
     void require_posable(sim::ToolId tool, const Pose& pose) const;
     void begin_call();

@@ -130,13 +130,34 @@ void Simulation::report_edits() {
 }
 
 void Simulation::save(ArchiveWriter& ar) const {
-    const std::vector<std::string> added(
-        warnings_.begin() + static_cast<std::ptrdiff_t>(num_body_warnings_), warnings_.end());
-    ar(world_.save(), edits_, last_step_, num_frames_, overlap_, tools_, warned_step_, added);
+    ar(world_.save());
+    save_run(ar);
 }
 
 void Simulation::restore(ArchiveReader& ar) {
     world_.restore(ar.read<std::string>());
+    restore_run(ar);
+}
+
+Simulation::Moment Simulation::moment() const {
+    ArchiveWriter run;
+    save_run(run);
+    return {world_.undo_point(), run.take()};
+}
+
+void Simulation::undo(const Moment& moment) {
+    world_.undo(moment.world);
+    ArchiveReader run(moment.run);
+    restore_run(run);
+}
+
+void Simulation::save_run(ArchiveWriter& ar) const {
+    const std::vector<std::string> added(
+        warnings_.begin() + static_cast<std::ptrdiff_t>(num_body_warnings_), warnings_.end());
+    ar(edits_, last_step_, num_frames_, overlap_, tools_, warned_step_, added);
+}
+
+void Simulation::restore_run(ArchiveReader& ar) {
     std::vector<std::string> added;
     ar(edits_, last_step_, num_frames_, overlap_, tools_, warned_step_, added);
     warnings_.resize(num_body_warnings_);

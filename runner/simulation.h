@@ -12,6 +12,7 @@
 #include "incise/runner/step_policy.h"
 #include "incise/scenario/scenario.h"
 #include "incise/sim/ledger.h"
+#include "incise/sim/undo_point.h"
 #include "incise/sim/world.h"
 #include "incise/topology/mesh.h"
 
@@ -84,6 +85,15 @@ class Simulation {
     /// Throws InputError if the data are damaged or not of this body. The simulation is then
     /// unusable. Cost: as World::restore().
     void restore(ArchiveReader& ar);
+    /// A moment between two steps: see sim::UndoPoint.
+    struct Moment {
+        sim::UndoPoint world;
+        std::string run;  ///< what the run remembers beside the world
+    };
+    /// Returns the present moment. Cost: O(#nodes), and what records of the edits take.
+    Moment moment() const;
+    /// Goes back to a moment of this run: see World::undo().
+    void undo(const Moment& moment);
     /// Returns a checksum of the body at the start: mesh, fibres, and the files of surfaces of
     /// cuts.
     std::uint64_t fingerprint() const { return fingerprint_; }
@@ -107,6 +117,8 @@ class Simulation {
 
   private:
     double next_stop() const;
+    void save_run(ArchiveWriter& ar) const;
+    void restore_run(ArchiveReader& ar);
     void report_edits();
     void warn_of_short_steps(const sim::EditRecord& edit);
     void warn_of_lost_elements();

@@ -440,9 +440,9 @@ void check_model(const Scenario& scenario, Parts& parts) {
 
 physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
                           const physics::MaterialTable& materials,
-                          physics::BoundaryConditions boundary_conditions) {
+                          const physics::BoundaryConditions& boundary_conditions) {
     try {
-        return physics::Model(mesh, materials, std::move(boundary_conditions));
+        return physics::Model(mesh, materials, boundary_conditions);
     } catch (const physics::UnsuitableMaterial& error) {
         throw BodyError(location_of_material(scenario, error.region),
                         error.what() + remedy_for(error));

@@ -32,7 +32,7 @@ physics::BoundaryConditions build_boundary_conditions(const Scenario& scenario,
 /// Builds the model of the body. Throws BodyError if a material does not suit its elements.
 physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
                           const physics::MaterialTable& materials,
-                          physics::BoundaryConditions boundary_conditions);
+                          const physics::BoundaryConditions& boundary_conditions);
 
 /// Builds the world of the body, without tools. Warns of elements that make its steps short. Throws
 /// as make_model().

@@ -108,8 +108,7 @@ EditRecord Ledger::record(double time, std::uint64_t step, const std::string& to
         if (cell.is_released) edit.volume_released += volume;
     }
     edit.before = before;
-    counts_ = count();
-    components_.apply(model_.mesh(), changes);
+    apply(changes);
     assert(components_.value() == topology::components(model_.mesh()).count);
     edit.after = last_ = body_totals();
     const auto energy = [](const BodyTotals& a) {
@@ -119,6 +118,11 @@ EditRecord Ledger::record(double time, std::uint64_t step, const std::string& to
     mass_removed_ += mass_removed;
     energy_removed_ += energy(edit.before) - energy(edit.after);
     return edit;
+}
+
+void Ledger::apply(const topology::ChangeSet& changes) {
+    counts_ = count();
+    components_.apply(model_.mesh(), changes);
 }
 
 double Ledger::mass_error() const {

@@ -87,6 +87,9 @@ class Ledger {
                       const cutting::Split& done, const fragments::FragmentChanges& fragments,
                       const BodyTotals& before, double mass_removed);
 
+    /// Follows an edit that takes back others, before restore().
+    void apply(const topology::ChangeSet& changes);
+
     std::size_t num_edits() const { return num_edits_; }
 
     /// Returns the totals at the start.

@@ -64,6 +64,8 @@ struct WorldDef {
     int num_threads = 1;  ///< does not change any result
 };
 
+class UndoPoint;
+
 using ToolId = Handle<struct ToolTag>;
 using ConstraintId = Handle<struct ConstraintTag>;
 using LoadId = Handle<struct LoadTag>;
@@ -77,9 +79,8 @@ struct ToolDef {
 /// One edit of the mesh by a tool.
 struct Edit {
     ToolId tool;
-    EditRecord record;               ///< conservation record of the edit
-    topology::ChangeSet changes;     ///< the changes of the mesh
-    physics::ModelChanges of_model;  ///< what they changed in the model
+    EditRecord record;       ///< conservation record of the edit
+    physics::BodyEdit body;  ///< what it did to mesh and physics
 };
 
 /// The state of a tool after a step.
@@ -322,6 +323,19 @@ class World {
     /// Cost: that of a new world and of topology::validate().
     /// @pre  the saved world had the same materials and the same solver
     void restore(std::string_view bytes);
+
+    /// Returns the present moment, to which undo() can go back. From now on the world remembers
+    /// its edits, until all such moments are destroyed. Cost: O(#nodes).
+    UndoPoint undo_point() const;
+    /// Goes back to a moment: takes back all edits since then, and gives body, tools, constraints,
+    /// loads and time what they had. save() returns the bytes that it would have returned then, and
+    /// later steps give the same bits. It also brings a world back that has failed. Ids of what has
+    /// been added since then are refused from now on. The same moment can be gone back to again.
+    /// Force terms stay, as in restore().
+    /// Throws InputError, and changes nothing, for a moment of another world, for one after an edit
+    /// that was taken back, and for one from before restore().
+    /// Cost: that of the edits since then, and O(n), some steps.
+    void undo(const UndoPoint& point);
 
   private:
     struct Parts;

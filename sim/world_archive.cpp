@@ -6,9 +6,11 @@
 
 #include "incise/base/checksum.h"
 #include "incise/base/number_format.h"
+#include "incise/sim/undo_point.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
 #include "incise/topology/mesh_archive.h"
+#include "incise/topology/mesh_edit.h"
 
 namespace incise::sim {
 
@@ -36,6 +38,11 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
       solver(former.solver),
       ledger(model),
       cutter(mesh, model.mesh_positions()) {
+    restore_rest(ar);
+    model.set_num_threads(former.model.num_threads());
+}
+
+void World::Parts::restore_rest(ArchiveReader& ar) {
     integrator->restore(ar, model);
     ledger.restore(ar);
     ar(cutter, tool_ids, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval,
@@ -55,7 +62,6 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
     if (!(stable_step > 0.0)) throw InputError("its stable step is not above 0");
     prepare_tools();
     require_sound_grasps();
-    model.set_num_threads(former.model.num_threads());
 }
 
 void World::Parts::require_sound_grasps() const {
@@ -70,12 +76,49 @@ void World::Parts::save(ArchiveWriter& ar) const {
     topology::save(mesh, ar);
     ar(time);
     model.save(ar);
+    save_rest(ar);
+}
+
+void World::Parts::save_motion(ArchiveWriter& ar) const {
+    ar(time);
+    model.save_motion(ar);
+    save_rest(ar);
+}
+
+void World::Parts::save_rest(ArchiveWriter& ar) const {
     integrator->save(ar);
     ledger.save(ar);
     ar(cutter, tool_ids, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval,
        has_moved, has_failed);
     ar(contact != nullptr);
     if (contact) contact->save(ar);
+}
+
+void World::Parts::go_back(std::span<const physics::BodyEdit* const> edits, ArchiveReader& ar) {
+    for (std::size_t i = edits.size(); i-- > 0;) {
+        const physics::BodyEdit back = inverse(*edits[i]);
+        topology::replay(mesh, back.material);
+        model.apply(mesh, back);
+        if (surface) surface->apply(mesh, back.material);
+        ledger.apply(back.material);
+    }
+    time = read_time(ar);
+    model.restore_motion(ar, time);
+    // The rest is made anew and then read, as in a world that is restored.
+    number = next_number();
+    tool_ids = {"tool", number};
+    constraints = {"constraint", number};
+    loads = {"load", number};
+    tools.clear();
+    grasps.clear();
+    cutter = cutting::Cutter(mesh, model.mesh_positions());
+    if (contact) contact = make_contact(contact->settings(), solver);
+    integrator = make_integrator(solver, contact.get());
+    loads_have_changed = false;
+    report = {};
+    restore_rest(ar);
+    // There may be other force terms now.
+    stable_step = std::min(stable_step, model.rest_stable_step());
 }
 
 /// Checks the tools that an archive contained, and computes the members that it does not contain.
@@ -160,6 +203,29 @@ void World::restore(std::string_view bytes) {
     // The saved world may have had other force terms.
     restored->stable_step = std::min(restored->stable_step, restored->model.rest_stable_step());
     parts_ = std::move(restored);
+}
+
+UndoPoint World::undo_point() const {
+    ArchiveWriter ar;
+    parts_->save_motion(ar);
+    return {parts_->log_end, parts_->mesh.epoch(), ar.take()};
+}
+
+void World::undo(const UndoPoint& point) {
+    const auto edits = point.edits_->edits_until(*parts_->log_end);
+    if (!edits)
+        throw InputError(
+            "the world cannot go back to this moment: it is of another world, or the world has "
+            "taken back an edit before it, or was restored since");
+    const std::uint64_t last = edits->empty() ? point.epoch_ : edits->back()->material.epoch_after;
+    if (last != parts_->mesh.epoch() || last != parts_->model.fragments().epoch())
+        throw InputError(
+            "the world cannot go back: it has failed within an edit; restore a state that was "
+            "saved before");
+    ArchiveReader ar(*point.motion_);
+    parts_->go_back(*edits, ar);
+    point.edits_->cut_off();
+    parts_->log_end = point.edits_;
 }
 
 }  // namespace incise::sim

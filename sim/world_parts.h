@@ -7,12 +7,14 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "incise/base/archive.h"
 #include "incise/contact/contact.h"
 #include "incise/cutting/cutter.h"
 #include "incise/physics/solve/integrator.h"
+#include "incise/sim/edit_log.h"
 #include "incise/sim/handles.h"
 #include "incise/sim/world.h"
 
@@ -102,8 +104,16 @@ struct World::Parts {
     /// `former`.
     Parts(const Parts& former, ArchiveReader& ar);
     void save(ArchiveWriter& ar) const;
+    /// Takes back edits, from the last one on, and restores what save_motion() wrote before them.
+    void go_back(std::span<const physics::BodyEdit* const> edits, ArchiveReader& ar);
+    void save_motion(ArchiveWriter& ar) const;
+    /// True if somebody has a moment to go back to.
+    bool is_undo_wanted() const { return log_end.use_count() > 1; }
     void prepare_tools();
     void require_sound_grasps() const;
+    /// Writes and reads what follows mesh and model in an archive.
+    void save_rest(ArchiveWriter& ar) const;
+    void restore_rest(ArchiveReader& ar);
 
     /// Steps to the time `end`, after checks. `dt` is the length that was asked for: far from time
     /// 0 the difference of the times is another one.
@@ -152,6 +162,7 @@ struct World::Parts {
     std::vector<std::optional<Grasp>> grasps;  // by constraint, of those that are one
     HandleTable<LoadId> loads{"load", number};
     bool loads_have_changed = false;  // since the forces were computed
+    std::shared_ptr<EditLog> log_end = std::make_shared<EditLog>();
     StepReport report;
     std::uint64_t num_steps = 0;
     double stable_step = 0.0;      // as last computed, s

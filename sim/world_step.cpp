@@ -165,7 +165,7 @@ void World::Parts::update_stable_step() {
         interval.moved = 0.0;
     } else {
         for (const Edit& edit : report.edits)
-            bound = std::min(bound, model.stable_step(edit.of_model.touched));
+            bound = std::min(bound, model.stable_step(edit.body.touched_nodes));
     }
     bound = interval.may_rise(stable_step) ? interval.least : std::min(bound, stable_step);
     if (bound == stable_step) return;
@@ -305,12 +305,13 @@ void World::Parts::follow(ToolId id, cutting::Split done, double end) {
     const BodyTotals before = has_moved ? ledger.body_totals() : ledger.last();
     has_moved = false;
     const double mass_removed = removed_mass(model, changes);
-    physics::ModelChanges of_model = model.apply(mesh, changes);
+    physics::BodyEdit edit = model.apply(mesh, changes);
+    if (is_undo_wanted()) log_end = log_end->append(edit);
     cutter.apply(mesh, changes);
     if (surface) surface->apply(mesh, changes);
-    EditRecord record = ledger.record(end, num_steps, tools[id.index].def.name, done,
-                                      of_model.fragments, before, mass_removed);
-    report.edits.push_back({id, std::move(record), std::move(done.changes), std::move(of_model)});
+    EditRecord record = ledger.record(end, num_steps, tools[id.index].def.name, done, edit.physics,
+                                      before, mass_removed);
+    report.edits.push_back({id, std::move(record), std::move(edit)});
 }
 
 }  // namespace incise::sim

@@ -40,7 +40,6 @@ LiveLoop::LiveLoop(Session& session, Recorder& recorder, Server& server)
       messages_(session, pictures_),
       downloads_(session, recorder, server),
       pace_(session.tick_length()),
-      moments_(session.save()),
       num_warnings_told_(session.simulation().warnings().size()) {}
 
 void LiveLoop::run(const std::function<bool()>& is_to_stop) {
@@ -248,7 +247,7 @@ void LiveLoop::keep_stroke(std::optional<Session::Moment> before) {
 /// stroke began, and no jaws or threads have taken hold or let go.
 std::optional<Session::Moment> LiveLoop::moment_before_stroke() const {
     if (moments_.is_stroke_at(session_.num_ticks()) && !has_changed_hold_) return std::nullopt;
-    return session_.save();
+    return session_.moment();
 }
 
 void LiveLoop::tighten(const Json& wish) {
@@ -270,7 +269,18 @@ void LiveLoop::drop(std::uint64_t page) {
 }
 
 void LiveLoop::go_back(const Session::Moment& moment) {
-    session_.restore(moment);
+    session_.undo(moment);
+    follow_return();
+}
+
+void LiveLoop::go_back_to_start() {
+    session_.reset();
+    moments_.forget_all();
+    follow_return();
+}
+
+/// Follows the session, which went back.
+void LiveLoop::follow_return() {
     note([&] { recorder_.note_return(session_); });
     moments_.forget_after(session_.num_ticks());
     pictures_.forget_surface();
@@ -289,7 +299,7 @@ void LiveLoop::undo() {
 }
 
 void LiveLoop::reset() {
-    go_back(moments_.start());
+    go_back_to_start();
     say_hello_to_all();
 }
 
@@ -323,7 +333,7 @@ void LiveLoop::note(const std::function<void()>& in_recording) {
 void LiveLoop::keep_good_moment() {
     const auto begin = Pace::Clock::now();
     if (begin < next_moment_) return;
-    moments_.keep_good(session_.save());
+    moments_.keep_good(session_.moment());
     const auto end = Pace::Clock::now();
     next_moment_ =
         end + std::max<Pace::Clock::duration>(std::chrono::seconds(1), 100 * (end - begin));
@@ -359,8 +369,10 @@ void LiveLoop::recover(const std::string& reason) {
     const std::uint64_t failure = session_.num_ticks();
     num_failures_ = failure <= last_failure_ + 1 ? num_failures_ + 1 : 1;
     last_failure_ = failure;
-    const Session::Moment moment = moments_.take_good();
-    go_back(moment);
+    if (moments_.has_good())
+        go_back(moments_.take_good());
+    else
+        go_back_to_start();
     std::string text = reason +
                        ". The body went back to t = " + format_number(session_.world().time()) +
                        " s, and all tools are put away";

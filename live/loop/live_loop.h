@@ -73,6 +73,8 @@ class LiveLoop {
     void tell_complaints(Device& device);
     void keep_good_moment();
     void go_back(const Session::Moment& moment);
+    void go_back_to_start();
+    void follow_return();
     void recover(const std::string& reason);
     void tell(std::string_view level, const std::string& text);
     void tell_warnings();

@@ -1,10 +1,9 @@
-// The states that a live session can go back to.
+// The moments that a live session can go back to.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <cstddef>
 #include <deque>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,34 +11,35 @@
 
 namespace incise::live {
 
-/// The start of a session, the states before the last strokes, and some of the last seconds, for
-/// when the body blows up. The memory of all is bounded: the oldest ones are forgotten.
+/// The moments before the last strokes of a session, and some of the last seconds, for when the
+/// body blows up. The memory of all is bounded: the oldest ones are forgotten.
 class Moments {
   public:
-    explicit Moments(Session::Moment start) : start_(std::move(start)) {}
-
-    const Session::Moment& start() const { return start_; }
-
-    /// Keeps the state before a stroke.
+    /// Keeps the moment before a stroke.
     void keep_stroke(Session::Moment moment) { keep(strokes_, std::move(moment), 64, 512u << 20); }
     bool has_stroke() const { return !strokes_.empty(); }
     /// True if the last stroke began after so many ticks.
     bool is_stroke_at(std::uint64_t num_ticks) const {
         return has_stroke() && strokes_.back().num_ticks == num_ticks;
     }
-    /// Returns the state before the last stroke, and forgets it.
+    /// Returns the moment before the last stroke, and forgets it.
     Session::Moment take_stroke() { return take(strokes_); }
 
-    /// Keeps a state of now and then.
+    /// Keeps a moment of now and then.
     void keep_good(Session::Moment moment) { keep(good_, std::move(moment), 5, 256u << 20); }
-    /// Returns the newest state of now and then, and forgets it: without any, the start.
-    Session::Moment take_good() { return good_.empty() ? start_ : take(good_); }
+    bool has_good() const { return !good_.empty(); }
+    /// Returns the newest moment of now and then, and forgets it.
+    Session::Moment take_good() { return take(good_); }
 
     /// Forgets all that is after a number of ticks: the session went back.
     void forget_after(std::uint64_t num_ticks) {
         const auto is_after = [&](const auto& moment) { return moment.num_ticks > num_ticks; };
         std::erase_if(strokes_, is_after);
         std::erase_if(good_, is_after);
+    }
+    void forget_all() {
+        strokes_.clear();
+        good_.clear();
     }
 
   private:
@@ -54,16 +54,19 @@ class Moments {
         std::size_t bytes = 0;
         constexpr std::size_t of_tool = 512;  // with its definition, about
         const auto size_of = [](const Session::Moment& kept) {
-            return kept.state.size() + of_tool * kept.tools.size();
+            return kept.state.world.num_bytes() + kept.state.run.size() +
+                   of_tool * kept.tools.size();
         };
         for (const auto& kept : list) bytes += size_of(kept);
-        while (list.size() > 1 && (list.size() > most || bytes > most_bytes)) {
+        const sim::UndoPoint& last = list.back().state.world;
+        while (list.size() > 1 &&
+               (list.size() > most ||
+                bytes + last.num_bytes_since(list.front().state.world) > most_bytes)) {
             bytes -= size_of(list.front());
             list.pop_front();
         }
     }
 
-    Session::Moment start_;
     List strokes_, good_;
 };
 

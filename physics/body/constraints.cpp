@@ -92,11 +92,10 @@ std::string describe(const ConstraintConflict& conflict, const topology::Mesh& m
            "', with different motion; make their selections disjoint or their motion there equal";
 }
 
-Constraints::Constraints(const Body& body, std::vector<Constraint> constraints,
-                         std::span<const Vec3> positions)
+Constraints::Constraints(const BodyView& body, std::vector<Constraint> constraints)
     : constraints_(std::move(constraints)) {
     require_agreement(body.mesh);
-    index_all(body, positions);
+    index_all(body);
 }
 
 void Constraints::require_agreement(const topology::Mesh& mesh) const {
@@ -107,8 +106,9 @@ void Constraints::require_agreement(const topology::Mesh& mesh) const {
 }
 
 template <class Visit>
-void Constraints::for_each_corner(const Body& body, VertexId member, Visit visit) {
-    const auto& [mesh, fragments] = body;
+void Constraints::for_each_corner(const BodyView& body, VertexId member, Visit visit) {
+    const topology::Mesh& mesh = body.mesh;
+    const fragments::FragmentMesh& fragments = body.fragments;
     if (!mesh.is_alive(member)) return;
     std::vector<CellId> cells;
     mesh.star(member, cells);
@@ -124,8 +124,9 @@ void Constraints::for_each_corner(const Body& body, VertexId member, Visit visit
     }
 }
 
-bool Constraints::does_prescribe(std::size_t constraint, const Body& body, NodeId n) const {
-    const auto& [mesh, fragments] = body;
+bool Constraints::does_prescribe(std::size_t constraint, const BodyView& body, NodeId n) const {
+    const topology::Mesh& mesh = body.mesh;
+    const fragments::FragmentMesh& fragments = body.fragments;
     const NodeId origin = fragments.origin(n);
     if (!std::ranges::binary_search(origins_[constraint], origin)) return false;
     const VertexSet& nodes = constraints_[constraint].nodes;
@@ -147,7 +148,7 @@ bool Constraints::does_prescribe(std::size_t constraint, const Body& body, NodeI
     return false;
 }
 
-void Constraints::index_all(const Body& body, std::span<const Vec3> positions) {
+void Constraints::index_all(const BodyView& body) {
     rows_.clear();
     row_of_node_.assign(body.fragments.node_capacity(), -1);
     origins_.assign(constraints_.size(), {});
@@ -164,10 +165,10 @@ void Constraints::index_all(const Body& body, std::span<const Vec3> positions) {
     std::ranges::sort(prescribed);
     prescribed.erase(std::unique(prescribed.begin(), prescribed.end()), prescribed.end());
     for (const NodeId n : prescribed) index(body, n);
-    for (const NodeId n : prescribed) begin_grasps(n, positions);
+    for (const NodeId n : prescribed) begin_grasps(n, body.positions);
 }
 
-void Constraints::add(const Body& body, Constraint constraint, std::span<const Vec3> positions) {
+void Constraints::add(const BodyView& body, Constraint constraint) {
     constraints_.push_back(std::move(constraint));
     try {
         require_agreement(body.mesh);
@@ -175,15 +176,15 @@ void Constraints::add(const Body& body, Constraint constraint, std::span<const V
         constraints_.pop_back();
         throw;
     }
-    index_all(body, positions);
+    index_all(body);
 }
 
-void Constraints::remove(const Body& body, std::size_t i, std::span<const Vec3> positions) {
+void Constraints::remove(const BodyView& body, std::size_t i) {
     constraints_.erase(constraints_.begin() + static_cast<std::ptrdiff_t>(i));
-    index_all(body, positions);
+    index_all(body);
 }
 
-void Constraints::index(const Body& body, NodeId n) {
+void Constraints::index(const BodyView& body, NodeId n) {
     constexpr std::array<int, 3> free{-1, -1, -1};
     std::array<int, 3> row = free;
     for (std::size_t s = 0; s < constraints_.size() && body.fragments.is_alive(n); ++s) {
@@ -226,11 +227,10 @@ void Constraints::prescribe(const std::array<int, 3>& constraint_of,
     }
 }
 
-void Constraints::apply(const Body& body, const topology::ChangeSet& of_mesh,
-                        const fragments::FragmentMeshChanges& of_fragments,
-                        std::span<const NodeId> touched, std::span<const Vec3> positions) {
+void Constraints::apply(const BodyView& body, const BodyEdit& edit) {
+    const fragments::FragmentMeshChanges& of_fragments = edit.physics.mesh;
     for (Constraint& constraint : constraints_) {
-        constraint.nodes.apply(body.mesh, of_mesh);
+        constraint.nodes.apply(body.mesh, edit.material);
         auto& gripped = constraint.gripped;
         gripped.erase(gripped.lower_bound(NodeId(of_fragments.node_capacity_after)), gripped.end());
         for (const fragments::NodeRecord& record : of_fragments.nodes_added) {
@@ -239,12 +239,12 @@ void Constraints::apply(const Body& body, const topology::ChangeSet& of_mesh,
                 gripped.try_emplace(record.id, source->second);
         }
     }
-    if (of_mesh.epoch_after < of_mesh.epoch_before) return index_all(body, positions);
+    if (edit.goes_back()) return index_all(body);
     row_of_node_.resize(of_fragments.node_capacity_after, -1);
     if (constraints_.empty()) return;
-    for (const NodeId n : touched) {
+    for (const NodeId n : edit.touched_nodes) {
         index(body, n);
-        begin_grasps(n, positions);
+        begin_grasps(n, body.positions);
     }
 }
 

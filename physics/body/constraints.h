@@ -12,6 +12,7 @@
 #include "incise/base/error.h"
 #include "incise/base/types.h"
 #include "incise/fragments/fragment_mesh.h"
+#include "incise/physics/body/body_edit.h"
 #include "incise/physics/body/time_curve.h"
 #include "incise/physics/body/vertex_set.h"
 #include "incise/topology/mesh.h"
@@ -95,17 +96,9 @@ std::string describe(const ConstraintConflict& conflict, const topology::Mesh& m
 /// reaction there.
 class Constraints {
   public:
-    /// The mesh and its fragments, both after the edit that is followed.
-    struct Body {
-        const topology::Mesh& mesh;
-        const fragments::FragmentMesh& fragments;
-    };
-
     /// Throws InputError, naming node and constraints, if two constraints prescribe different
-    /// values of the same component of a node.
-    /// @param positions  current, m, by node of the fragments: those at which grasps begin
-    Constraints(const Body& body, std::vector<Constraint> constraints,
-                std::span<const Vec3> positions);
+    /// values of the same component of a node. Grasps begin at the positions of the body.
+    Constraints(const BodyView& body, std::vector<Constraint> constraints);
 
     std::span<const Constraint> all() const { return constraints_; }
     std::size_t size() const { return constraints_.size(); }
@@ -130,31 +123,24 @@ class Constraints {
                    const fragments::FragmentMesh& fragments, NodeId n, double time, Vec3& x) const;
 
     /// Appends a constraint; see Model::add_constraint.
-    void add(const Body& body, Constraint constraint, std::span<const Vec3> positions);
+    void add(const BodyView& body, Constraint constraint);
     /// Removes a constraint; see Model::remove_constraint.
-    void remove(const Body& body, std::size_t i, std::span<const Vec3> positions);
+    void remove(const BodyView& body, std::size_t i);
     void set_grip(std::size_t i, TimeCurve<Pose> grip) { constraints_[i].grip = std::move(grip); }
 
     /// Follows an edit. A copy of a grasped node is grasped where that node is.
-    /// @param body          after the edit
-    /// @param of_mesh       the changes of the mesh
-    /// @param of_fragments  the changes of the fragments
-    /// @param touched       nodes of the fragments that may be prescribed anew or become free
-    /// @param positions     current, m, by node of the fragments
-    /// Cost: proportional to the touched nodes; for the undo of an edit as for a new object.
-    void apply(const Body& body, const topology::ChangeSet& of_mesh,
-               const fragments::FragmentMeshChanges& of_fragments, std::span<const NodeId> touched,
-               std::span<const Vec3> positions);
+    /// Cost: proportional to the touched nodes; for an edit that goes back as for a new object.
+    void apply(const BodyView& body, const BodyEdit& edit);
 
   private:
     void require_agreement(const topology::Mesh& mesh) const;
     /// Calls visit(n) for each node of the fragments on which a node of the mesh depends; some of
     /// them more than once.
     template <class Visit>
-    static void for_each_corner(const Body& body, VertexId member, Visit visit);
-    bool does_prescribe(std::size_t constraint, const Body& body, NodeId n) const;
-    void index(const Body& body, NodeId n);
-    void index_all(const Body& body, std::span<const Vec3> positions);
+    static void for_each_corner(const BodyView& body, VertexId member, Visit visit);
+    bool does_prescribe(std::size_t constraint, const BodyView& body, NodeId n) const;
+    void index(const BodyView& body, NodeId n);
+    void index_all(const BodyView& body);
     void begin_grasps(NodeId n, std::span<const Vec3> positions);
 
     std::vector<Constraint> constraints_;

@@ -4,45 +4,11 @@
 
 #include <span>
 
-#include "incise/fragments/fragment_mesh.h"
-#include "incise/physics/elements/element_store.h"
-#include "incise/physics/elements/state.h"
+#include "incise/base/types.h"
+#include "incise/physics/body/body_edit.h"
 #include "incise/physics/elements/workers.h"
-#include "incise/topology/change_set.h"
-#include "incise/topology/mesh.h"
 
 namespace incise::physics {
-
-/// The parts of a body that a force term may read.
-///
-/// Forces act on the nodes of the physics: these have masses and positions of their own. The
-/// vertices of the mesh follow them; FragmentMesh::embedded() gives their weights. Before the first
-/// cut, both have the same numbers.
-struct BodyView {
-    const topology::Mesh& mesh;
-    const fragments::FragmentMesh& fragments;
-    const ElementStore& elements;
-    std::span<const double> masses;  ///< lumped, kg, by node of the fragments
-
-    /// Returns the mass of an element of the mesh at each of its corners, kg.
-    double mass_at_corners(CellId cell) const {
-        const ElementId e = fragments.fragment_of_cell(cell);
-        if (fragments.cells_of(e).size() == 1 && fragments.share(e) == 1.0)
-            return elements.block_of(fragments, e).contributions(e).mass;
-        return elements.density(mesh.region(cell)) * topology::rest_volume(mesh, cell) /
-               static_cast<double>(mesh.corners(cell).size());
-    }
-};
-
-/// An edit of a body: that of its mesh, and what it changed in the fragments.
-struct BodyEdit {
-    const topology::ChangeSet& of_mesh;
-    const fragments::FragmentMeshChanges& of_fragments;
-    /// In ascending order, the vertices of the mesh at cells that have changed.
-    std::span<const VertexId> touched_of_mesh;
-    /// In ascending order, the nodes of the fragments whose mass may have changed.
-    std::span<const NodeId> touched;
-};
 
 /// One term of the outer forces, such as the loads.
 ///

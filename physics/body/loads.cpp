@@ -337,12 +337,12 @@ void Loads::apply(const BodyView& body, const BodyEdit& edit) {
         const BodyEdit& edit;
 
         void operator()(NodalLoad& load) const {
-            load.nodes.apply(body.mesh, edit.of_mesh);
-            share(load, body, edit.touched_of_mesh);
+            load.nodes.apply(body.mesh, edit.material);
+            share(load, body, edit.touched_vertices);
         }
-        void operator()(TractionLoad& load) const { load.faces.apply(body.mesh, edit.of_mesh); }
-        void operator()(PressureLoad& load) const { load.faces.apply(body.mesh, edit.of_mesh); }
-        void operator()(BodyLoad& load) const { load.elements.apply(body.mesh, edit.of_mesh); }
+        void operator()(TractionLoad& load) const { load.faces.apply(body.mesh, edit.material); }
+        void operator()(PressureLoad& load) const { load.faces.apply(body.mesh, edit.material); }
+        void operator()(BodyLoad& load) const { load.elements.apply(body.mesh, edit.material); }
     };
     for (Load& load : loads_) std::visit(Follower{body, edit}, load.kind);
     is_up_to_date_ = false;

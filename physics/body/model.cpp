@@ -82,7 +82,7 @@ Model::Model(const topology::Mesh& mesh, FragmentMesh fragments, const MaterialT
       damping_(boundary_conditions.damping),
       body_size_(diagonal(mesh)),
       masses_(fragments_.node_capacity(), 0.0),
-      constraints_(bodies(), std::move(boundary_conditions.constraints), state_.positions()),
+      constraints_(view(), std::move(boundary_conditions.constraints)),
       loads_(boundary_conditions.gravity, {}, view()),
       reactions_(constraints_.size()) {
     fragments_.hold(held_by(mesh, constraints_.all()));
@@ -162,14 +162,14 @@ void Model::visit_outer_tangents(std::span<const Vec3> positions, double time,
 }
 
 void Model::add_constraint(Constraint constraint) {
-    constraints_.add(bodies(), std::move(constraint), positions());
+    constraints_.add(view(), std::move(constraint));
     fragments_.hold(held_by(mesh_, constraints_.all()));
     reactions_.emplace_back();
     ++structure_version_;
 }
 
 void Model::remove_constraint(std::size_t i) {
-    constraints_.remove(bodies(), i, positions());
+    constraints_.remove(view(), i);
     fragments_.hold(held_by(mesh_, constraints_.all()));
     reactions_.erase(reactions_.begin() + static_cast<std::ptrdiff_t>(i));
     ++structure_version_;
@@ -223,9 +223,19 @@ void Model::take_force_terms(Model& former, double time) {
 }
 
 void Model::save(ArchiveWriter& ar) const {
-    const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
     fragments::save(fragments_, ar);
-    ar(copy(fibres()), loads_.gravity(), damping_, copy(constraints_.all()), copy(loads_.all()));
+    ar(std::vector(fibres().begin(), fibres().end()));
+    save_state(ar);
+}
+
+void Model::save_motion(ArchiveWriter& ar) const {
+    ar(std::vector(fragments_.held().begin(), fragments_.held().end()));
+    save_state(ar);
+}
+
+void Model::save_state(ArchiveWriter& ar) const {
+    const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
+    ar(loads_.gravity(), damping_, copy(constraints_.all()), copy(loads_.all()));
     state_.save(ar);
     ar(reactions_, external_work_, dissipated_energy_, largest_move_, body_size_,
        structure_version_);
@@ -238,6 +248,19 @@ Model::Model(const topology::Mesh& mesh, MaterialTable table, ArchiveReader& ar,
     const bool has_fibres =
         std::ranges::any_of(elements_.materials().materials, &Material::has_fibres);
     if (has_fibres == fibres().empty()) throw InputError("the fibres are those of another body");
+    restore_state(ar, time);
+}
+
+void Model::restore_motion(ArchiveReader& ar, double time) {
+    auto held = ar.read<std::vector<std::uint8_t>>();
+    if (held.size() != mesh_.node_capacity())
+        throw InputError("the motion is that of another body");
+    fragments_.set_held(std::move(held));
+    BoundaryConditions boundary_conditions = read_boundary_conditions(mesh_, ar);
+    damping_ = boundary_conditions.damping;
+    loads_ = Loads(boundary_conditions.gravity, std::move(boundary_conditions.loads), view());
+    constraints_ = Constraints(view(), std::move(boundary_conditions.constraints));
+    reactions_.assign(constraints_.size(), {});
     restore_state(ar, time);
 }
 

@@ -13,6 +13,7 @@
 #include "incise/base/archive.h"
 #include "incise/fragments/embedding.h"
 #include "incise/fragments/fragment_mesh.h"
+#include "incise/physics/body/body_edit.h"
 #include "incise/physics/body/constraints.h"
 #include "incise/physics/body/force_term.h"
 #include "incise/physics/body/loads.h"
@@ -65,20 +66,6 @@ struct Reaction {
         return {factor * r.force, factor * r.moment};
     }
     static void archive(auto& ar, auto& self) { ar(self.force, self.moment); }
-};
-
-/// The record of what an edit did to a model, with which undo() takes it back.
-struct ModelChanges {
-    fragments::FragmentChanges fragments;
-    /// The velocity of a node that keeps the momenta after light fragments joined others.
-    struct Velocity {
-        NodeId node;
-        Vec3 before = Vec3::Zero(), after = Vec3::Zero();  ///< m/s
-        bool operator==(const Velocity&) const = default;
-    };
-    std::vector<Velocity> velocities;
-    /// The nodes of the fragments whose mass or stiffness it may have changed, in ascending order.
-    std::vector<NodeId> touched;
 };
 
 /// A body with lumped masses at nodes, and elastic elements between them.
@@ -222,19 +209,19 @@ class Model {
     /// of mass change a little: docs/theory.md, Fragments. Merged nodes keep their momentum.
     ///
     /// The forces stay as they are until compute_forces() is called.
-    /// Throws InputError for an edit out of turn. Cost: proportional to the touched stars.
+    /// Throws InputError for an edit out of turn, and for one that goes back. Cost: proportional to
+    /// the touched stars.
     /// @param mesh     the mesh of the model, after the edit
     /// @param changes  the record of the edit
-    ModelChanges apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
-    /// Takes back an edit that apply() has followed. Before any motion, it restores the former
-    /// state bit for bit.
-    /// Throws InputError, and changes nothing, unless the edit is the last one.
-    /// @param mesh     the mesh of the model, on which the inverse of the edit was replayed
-    /// @param changes  the record of the edit
-    /// @param done     what apply() returned
-    /// Cost: that of the edit, and O(n) in the nodes of constraints.
-    void undo(const topology::Mesh& mesh, const topology::ChangeSet& changes,
-              const ModelChanges& done);
+    BodyEdit apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+    /// Applies an edit that is known, in both directions: the inverse of the last one takes it
+    /// back, and then the edit itself makes it again. Before any motion, the inverse restores the
+    /// former state bit for bit.
+    /// Throws InputError, and changes nothing, for an edit out of turn.
+    /// @param mesh  the mesh of the model, on which edit.material was replayed
+    /// @param edit  what the other apply() has returned, or its inverse()
+    /// Cost: that of the edit, and on the way back O(n) in the nodes of constraints.
+    void apply(const topology::Mesh& mesh, const BodyEdit& edit);
 
     /// Appends a constraint to the list. Throws InputError, and changes nothing, if another
     /// constraint prescribes another value of a component of a node. Cost: O(n) in the nodes of the
@@ -274,6 +261,13 @@ class Model {
     /// Writes everything but the mesh, the materials and the added force terms: state, history,
     /// work, reactions, fibres, constraints and loads. Cost: O(n).
     void save(ArchiveWriter& ar) const;
+    /// Writes of save() what remains if mesh and fragments are known: not the fibres either.
+    /// Cost: O(#nodes).
+    void save_motion(ArchiveWriter& ar) const;
+    /// Restores what save_motion() has written, and computes the forces.
+    /// @pre  mesh and fragments are those of that time: all edits since were taken back
+    /// Throws InputError for the data of another body. Cost: O(n), about that of a step.
+    void restore_motion(ArchiveReader& ar, double time);
 
     const ElementStore& elements() const { return elements_; }
     const Constraints& constraints() const { return constraints_; }
@@ -429,19 +423,19 @@ class Model {
     void set_outer_forces(NodeRange range, std::span<const Vec3> positions, double time,
                           std::span<Vec3> forces) const;
 
+    void save_state(ArchiveWriter& ar) const;
     void restore_state(ArchiveReader& ar, double time);
     NodeSums sums_of(NodeRange range) const;
-    BodyView view() const { return {mesh_, fragments_, elements_, masses_}; }
-    Constraints::Body bodies() const { return {mesh_, fragments_}; }
+    BodyView view() const { return {mesh_, fragments_, elements_, masses_, state_.positions()}; }
     void update_outer_terms();
     void resize(std::size_t num_nodes);
     void gather(NodeId n);
-    void follow(const BodyEdit& edit, const fragments::FragmentChanges& changes);
-    void edit_elements(const BodyEdit& edit, const fragments::FragmentChanges& changes);
+    void follow(const BodyEdit& edit);
+    void edit_elements(const fragments::FragmentChanges& changes);
     Momenta momenta_of(std::span<const NodeId> nodes) const;
     Momenta momenta_of_removed(const topology::ChangeSet& changes) const;
-    std::vector<ModelChanges::Velocity> change_momenta(std::span<const NodeId> nodes,
-                                                       const Momenta& by);
+    std::vector<BodyEdit::Velocity> change_momenta(std::span<const NodeId> nodes,
+                                                   const Momenta& by);
 
     const topology::Mesh& mesh_;
     fragments::FragmentMesh fragments_;

@@ -59,9 +59,8 @@ std::vector<Node> touched_nodes(const Mesh& mesh, const MeshChanges<Node, Elemen
 
 /// Returns the nodes of the fragments whose mass or stiffness an edit may have changed, in
 /// ascending order.
-std::vector<NodeId> touched_nodes(const FragmentMesh& fragments, const FragmentChanges& changes,
-                                  const FragmentMeshChanges& of_fragments) {
-    std::vector<NodeId> touched = touched_nodes(fragments, of_fragments);
+std::vector<NodeId> touched_nodes(const FragmentMesh& fragments, const FragmentChanges& changes) {
+    std::vector<NodeId> touched = touched_nodes(fragments, changes.mesh);
     for (const fragments::ShareChange& change : changes.shares) {
         const auto corners = fragments.corners(change.fragment);
         touched.insert(touched.end(), corners.begin(), corners.end());
@@ -72,66 +71,64 @@ std::vector<NodeId> touched_nodes(const FragmentMesh& fragments, const FragmentC
 
 }  // namespace
 
-void Model::edit_elements(const BodyEdit& edit, const FragmentChanges& changes) {
-    const FragmentMeshChanges& of_fragments = edit.of_fragments;
-    elements_.apply(fragments_, of_fragments);
-    for (const auto& record : of_fragments.elements_removed)
+void Model::edit_elements(const FragmentChanges& changes) {
+    elements_.apply(fragments_, changes.mesh);
+    for (const auto& record : changes.mesh.elements_removed)
         elements_.erase(record.id, record.region);
-    for (const auto& record : of_fragments.elements_added) elements_.insert(fragments_, record.id);
+    for (const auto& record : changes.mesh.elements_added) elements_.insert(fragments_, record.id);
     std::vector<ElementId> changed;
-    for (const fragments::ElementRewiring& rewiring : of_fragments.rewired)
+    for (const fragments::ElementRewiring& rewiring : changes.mesh.rewired)
         changed.push_back(rewiring.element);
     for (const fragments::ShareChange& change : changes.shares) changed.push_back(change.fragment);
     make_sorted_set(changed);
     for (const ElementId e : changed) elements_.replace(fragments_, e);
 }
 
-ModelChanges Model::apply(const topology::Mesh& mesh, const ChangeSet& changes) {
-    if (changes.is_empty()) return {};
+BodyEdit Model::apply(const topology::Mesh& mesh, const ChangeSet& changes) {
+    if (changes.is_empty()) return {changes, {}, {}, {}, {}};
     if (changes.epoch_after < changes.epoch_before)
-        throw InputError("model: this edit takes back another one; call undo() for it");
+        throw InputError("model: this edit takes back another one: apply the BodyEdit that does");
     topology::FollowedEpoch(fragments_.epoch()).advance(mesh, changes, "model");
     const Momenta removed = momenta_of_removed(changes);
-    ModelChanges done{fragments_.apply(mesh, changes), {}, {}};
-    const auto touched_of_mesh = touched_nodes(mesh, changes);
-    done.touched = touched_nodes(fragments_, done.fragments, done.fragments.mesh);
-    const auto& touched = done.touched;
-    const bool keeps_momenta = done.fragments.has_joins();
-    const Momenta before = keeps_momenta ? momenta_of(touched) - removed : Momenta();
-    follow({changes, done.fragments.mesh, touched_of_mesh, touched}, done.fragments);
-    if (keeps_momenta) done.velocities = change_momenta(touched, before - momenta_of(touched));
-    return done;
+    BodyEdit edit{changes, fragments_.apply(mesh, changes), {}, touched_nodes(mesh, changes), {}};
+    edit.touched_nodes = touched_nodes(fragments_, edit.physics);
+    const bool keeps_momenta = edit.physics.has_joins();
+    const Momenta before = keeps_momenta ? momenta_of(edit.touched_nodes) - removed : Momenta();
+    follow(edit);
+    if (keeps_momenta)
+        edit.velocities =
+            change_momenta(edit.touched_nodes, before - momenta_of(edit.touched_nodes));
+    return edit;
 }
 
-void Model::undo(const topology::Mesh& mesh, const ChangeSet& changes, const ModelChanges& done) {
-    if (changes.is_empty()) return;
-    fragments_.undo(mesh, done.fragments);
+void Model::apply(const topology::Mesh& mesh, const BodyEdit& edit) {
+    if (edit.is_empty()) return;
+    if (!edit.goes_back()) {
+        apply(mesh, edit.material);
+        return;
+    }
+    fragments_.go_back(mesh, edit.physics);
     const auto velocities = state_.velocities();
-    const bool has_moved = std::ranges::any_of(done.velocities, [&](const auto& change) {
-        return velocities[change.node.index()] != change.after;
+    const bool has_moved = std::ranges::any_of(edit.velocities, [&](const auto& change) {
+        return velocities[change.node.index()] != change.before;
     });
     if (!has_moved)
-        for (const ModelChanges::Velocity& change : done.velocities)
-            state_.set_velocity(change.node, change.before);
-    const ChangeSet of_mesh = inverse(changes);
-    FragmentMeshChanges of_fragments = done.fragments.mesh;
-    invert(of_fragments);
-    const auto touched_of_mesh = touched_nodes(mesh, of_mesh);
-    const auto touched = touched_nodes(fragments_, done.fragments, of_fragments);
-    follow({of_mesh, of_fragments, touched_of_mesh, touched}, done.fragments);
+        for (const BodyEdit::Velocity& change : edit.velocities)
+            state_.set_velocity(change.node, change.after);
+    follow(edit);
 }
 
-void Model::follow(const BodyEdit& edit, const FragmentChanges& changes) {
+void Model::follow(const BodyEdit& edit) {
     ++structure_version_;
-    const FragmentMeshChanges& of_fragments = edit.of_fragments;
+    const FragmentMeshChanges& of_fragments = edit.physics.mesh;
     resize(std::max(of_fragments.node_capacity_before, of_fragments.node_capacity_after));
     state_.apply(fragments_, of_fragments, masses_);
-    edit_elements(edit, changes);
+    edit_elements(edit.physics);
     resize(of_fragments.node_capacity_after);
     elements_.number_nodes(masses_.size());
-    for (const NodeId n : edit.touched) gather(n);
-    embedding_.apply(mesh_, fragments_, edit.touched_of_mesh, changes);
-    constraints_.apply(bodies(), edit.of_mesh, of_fragments, edit.touched, positions());
+    for (const NodeId n : edit.touched_nodes) gather(n);
+    embedding_.apply(mesh_, fragments_, edit.touched_vertices, edit.physics);
+    constraints_.apply(view(), edit);
     loads_.apply(view(), edit);
     for (const auto& term : added_terms_) term->apply(view(), edit);
 }
@@ -181,9 +178,9 @@ Momenta Model::momenta_of_removed(const ChangeSet& changes) const {
 }
 
 /// Changes the momenta of nodes by a rigid change of the velocities of those without constraint.
-std::vector<ModelChanges::Velocity> Model::change_momenta(std::span<const NodeId> nodes,
-                                                          const Momenta& by) {
-    std::vector<ModelChanges::Velocity> changes;
+std::vector<BodyEdit::Velocity> Model::change_momenta(std::span<const NodeId> nodes,
+                                                      const Momenta& by) {
+    std::vector<BodyEdit::Velocity> changes;
     if (by.linear.isZero(0.0) && by.angular.isZero(0.0)) return changes;
     std::vector<MassPoint> points;
     for (const NodeId n : nodes) {

@@ -71,14 +71,14 @@ Balance::Balance(const Model& model) : totals(model.totals()) {
         elastic_scale += std::abs(model.element_result(e).energy);
 }
 
-void expect_kept(const Balance& before, const Model& model, const physics::ModelChanges& done) {
+void expect_kept(const Balance& before, const Model& model, const physics::BodyEdit& done) {
     const Balance after(model);
     const physics::Totals &a = before.totals, &b = after.totals;
     EXPECT_NEAR(b.mass, a.mass, 1e-12 * a.mass);
     EXPECT_NEAR(b.rest_volume, a.rest_volume, 1e-12 * a.rest_volume);
     EXPECT_LE((b.momentum - a.momentum).norm(), 1e-12 * before.momentum_scale);
     EXPECT_LE((b.angular_momentum - a.angular_momentum).norm(), 1e-12 * before.angular_scale);
-    if (done.fragments.has_joins()) return;
+    if (done.physics.has_joins()) return;
     EXPECT_LE((after.moment - before.moment).norm(), 1e-12 * before.moment_scale);
     EXPECT_NEAR(b.kinetic_energy, a.kinetic_energy, 1e-12 * a.kinetic_energy);
     // At rest there is nothing but rounding.

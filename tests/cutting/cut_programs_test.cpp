@@ -128,13 +128,13 @@ class Patient {
     Split follow(Edit edit) {
         const Balance before(model_);
         const Split done = edit();
-        const physics::ModelChanges of_model = model_.apply(mesh_, done.changes);
-        if (!done.changes.is_empty()) check(before, of_model);
-        has_joins_ |= of_model.fragments.has_joins();
+        const physics::BodyEdit done_to_body = model_.apply(mesh_, done.changes);
+        if (!done.changes.is_empty()) check(before, done_to_body);
+        has_joins_ |= done_to_body.physics.has_joins();
         return done;
     }
 
-    void check(const Balance& before, const physics::ModelChanges& done) {
+    void check(const Balance& before, const physics::BodyEdit& done) {
         ASSERT_EQ(topology::validate(mesh_), std::vector<std::string>{});
         EXPECT_NEAR(rest_volume(mesh_), rest_volume_, 1e-12 * rest_volume_);
         ASSERT_EQ(fragments::validate(model_.fragments(), mesh_), std::vector<std::string>{});

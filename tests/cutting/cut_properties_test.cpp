@@ -154,9 +154,9 @@ class Patient {
 
     void expect_undone_to_the_first_bits() {
         for (; !done_.empty(); done_.pop_back()) {
-            const auto& [changes, of_model] = done_.back();
-            replay(mesh_, inverse(changes));
-            model_.undo(mesh_, changes, of_model);
+            const physics::BodyEdit back = inverse(done_.back());
+            replay(mesh_, back.material);
+            model_.apply(mesh_, back);
         }
         EXPECT_EQ(test::MeshSnapshot(mesh_), first_mesh_);
         model_.compute_forces(0.0);
@@ -228,12 +228,12 @@ class Patient {
         const auto now = model_.mesh_positions();
         const std::vector<Vec3> still(now.begin(), now.end());
         const ChangeSet changes = edit(TissueMotion{mesh_, still, still}).changes;
-        physics::ModelChanges done = model_.apply(mesh_, changes);
+        physics::BodyEdit done = model_.apply(mesh_, changes);
         if (changes.is_empty()) return;
         ASSERT_EQ(topology::validate(mesh_), std::vector<std::string>{});
         ASSERT_EQ(fragments::validate(model_.fragments(), mesh_), std::vector<std::string>{});
         expect_kept(before, model_, done);
-        done_.emplace_back(changes, std::move(done));
+        done_.push_back(std::move(done));
         expect_equal_to_a_fresh_one(model_, table_);
     }
 
@@ -256,7 +256,7 @@ class Patient {
     Box box_;              // at first
     double longest_edge_;  // at first, m
     SnapHistory snap_history_;
-    std::vector<std::pair<ChangeSet, physics::ModelChanges>> done_;
+    std::vector<physics::BodyEdit> done_;
 };
 
 TEST(CutProperties, HoldForCutsThroughPointsOfAGrid) {

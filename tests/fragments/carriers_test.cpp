@@ -152,7 +152,7 @@ TEST(Carriers, LetTheBodyBeCutAgain) {
             expect_round_trip(built.mesh, read);
             if (changes.is_empty()) continue;
             replay(built.mesh, inverse(changes));
-            read.undo(built.mesh, done);
+            read.go_back(built.mesh, inverse(done));
             EXPECT_TRUE(read == before.front());
         }
     EXPECT_GT(num_added, test::num_cases(100));

@@ -242,18 +242,18 @@ TEST(FragmentMesh, UndoesEditsWithTheirIds) {
                 if (done.back().first.is_empty()) continue;
                 const FragmentChanges& undone = done.back().second;
                 if (done.size() > 1 && !done[done.size() - 2].first.is_empty()) {
-                    EXPECT_THROW(fragments.undo(material, done[done.size() - 2].second),
+                    EXPECT_THROW(fragments.go_back(material, inverse(done[done.size() - 2].second)),
                                  InputError);
                 }
                 replay(material, inverse(done.back().first));
-                fragments.undo(material, undone);
+                fragments.go_back(material, inverse(undone));
                 EXPECT_TRUE(fragments == before.back());
                 expect_sound(fragments, material);
                 // Done again, it has the same effect.
                 replay(material, done.back().first);
                 EXPECT_TRUE(fragments.apply(material, done.back().first) == undone);
                 replay(material, inverse(done.back().first));
-                fragments.undo(material, undone);
+                fragments.go_back(material, inverse(undone));
             }
         }
     }

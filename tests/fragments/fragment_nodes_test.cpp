@@ -252,7 +252,7 @@ TEST(FragmentNodes, AreTheSameAfterUndoAndReplay) {
                       const ChangeSet& changes, const FragmentChanges& done) {
             FragmentMesh fragments = now;
             replay(material, inverse(changes));
-            fragments.undo(material, done);
+            fragments.go_back(material, inverse(done));
             EXPECT_TRUE(fragments == before);
             replay(material, changes);
             EXPECT_TRUE(fragments.apply(material, changes) == done);

@@ -179,11 +179,11 @@ TEST(Session, DrawsAThreadEvenlyWithinATick) {
 TEST(Session, GivesUpATickWhenAskedTo) {
     Session session(BlockFolder().scenario());
     session.tick();
-    const Session::Moment moment = session.save();
+    const Session::Moment moment = session.moment();
     int num_steps = 0;
     EXPECT_FALSE(session.tick([&] { return ++num_steps == 2; }));
     EXPECT_EQ(session.num_ticks(), 1u);
-    session.restore(moment);
+    session.undo(moment);
     EXPECT_TRUE(session.tick());
 }
 
@@ -203,9 +203,9 @@ TEST(Session, GoesOnInTheSameBitsAfterItWentBack) {
     session.execute(order(R"({"close":"jaws"})"));
     session.execute(move("jaws", 0.02, 0.02, 0.055));
     session.tick();
-    const Session::Moment moment = session.save();
+    const Session::Moment moment = session.moment();
     const auto first = stroke();
-    session.restore(moment);
+    session.undo(moment);
     EXPECT_EQ(session.num_ticks(), 1u);
     EXPECT_EQ(session.find("knife"), nullptr);
     ASSERT_NE(session.find("jaws"), nullptr);

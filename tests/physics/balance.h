@@ -77,10 +77,10 @@ inline Carried carried_by(const Model& model, CellId cell) {
 
 /// @param edit              that the model has followed
 /// @param energy_round_off  of elastic energies; larger where strains are small
-inline void expect_balance(const Balance& before, const Model& model, const FollowedEdit& edit,
+inline void expect_balance(const Balance& before, const Model& model, const BodyEdit& edit,
                            const std::vector<Carried>& carried_by_element,
                            double energy_round_off = round_off) {
-    const topology::ChangeSet& changes = edit.changes;
+    const topology::ChangeSet& changes = edit.material;
     const Balance after(model);
     double mass = 0.0, volume = 0.0, energy = 0.0;
     // The energies of single elements are the reference's, that of the body comes from lanes: they
@@ -98,13 +98,13 @@ inline void expect_balance(const Balance& before, const Model& model, const Foll
     const Totals &a = before.totals, &b = after.totals;
     EXPECT_NEAR(a.mass - b.mass, mass, round_off * a.mass);
     EXPECT_NEAR(a.rest_volume - b.rest_volume, volume, round_off * a.rest_volume);
-    const auto& of_fragments = edit.of_model.fragments;
+    const auto& of_fragments = edit.physics;
     const bool merges =
         std::any_of(of_fragments.mesh.nodes_removed.begin(), of_fragments.mesh.nodes_removed.end(),
                     [](const auto& record) { return record.num_sources > 0; });
     if (of_fragments.has_joins()) {
         // A rigid change of velocities of the free nodes near the edit keeps the momentum.
-        if (merges || edit.of_model.velocities.empty()) return;
+        if (merges || edit.velocities.empty()) return;
         EXPECT_LE((a.momentum - b.momentum - momentum).norm(),
                   round_off * (before.momentum_scale + after.momentum_scale));
         return;

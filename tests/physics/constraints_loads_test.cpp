@@ -161,7 +161,7 @@ TEST(Constraints, TakeInNodesBornBetweenTheirs) {
     Model model(mesh, table_of_one_law(soft_law), s);
     const auto changes = open_across(mesh, 0.1, false);
     ASSERT_EQ(changes.nodes_added.size(), 9u);
-    const FollowedEdit done = follow(model, changes);
+    const BodyEdit done = follow(model, changes);
     double time = 0.0;
     const double dt = 0.5 * model.stable_step();
     while (time < 1.0) step(model, time, dt);

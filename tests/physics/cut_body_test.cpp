@@ -63,8 +63,8 @@ TEST(CutBodies, KeepAllTotalsWithoutLightFragments) {
             test::Random random(seed);
             for (int i = 0; i < 3; ++i) {
                 const Balance before(body.model);
-                const FollowedEdit done = follow(body.model, random_cut(body.mesh, random));
-                EXPECT_FALSE(done.of_model.fragments.has_joins());
+                const BodyEdit done = follow(body.model, random_cut(body.mesh, random));
+                EXPECT_FALSE(done.physics.has_joins());
                 ASSERT_EQ(fragments::validate(body.model.fragments(), body.mesh), no_violations);
                 expect_balance(before, body.model, done, {});
             }
@@ -82,7 +82,7 @@ TEST(CutBodies, KeepMassAndMomentaWithLightFragments) {
             test::Random random(seed);
             for (int i = 0; i < 3; ++i) {
                 const Balance before(body.model);
-                const FollowedEdit done = follow(body.model, random_cut(body.mesh, random));
+                const BodyEdit done = follow(body.model, random_cut(body.mesh, random));
                 ASSERT_EQ(fragments::validate(body.model.fragments(), body.mesh), no_violations);
                 const Totals &a = before.totals, b = body.model.totals();
                 EXPECT_NEAR(a.mass, b.mass, round_off * a.mass);
@@ -90,7 +90,7 @@ TEST(CutBodies, KeepMassAndMomentaWithLightFragments) {
                 EXPECT_LE((a.momentum - b.momentum).norm(), 1e-12 * before.momentum_scale);
                 EXPECT_LE((a.angular_momentum - b.angular_momentum).norm(),
                           1e-12 * before.angular_scale);
-                num_joins += done.of_model.fragments.has_joins() ? 1 : 0;
+                num_joins += done.physics.has_joins() ? 1 : 0;
             }
         }
     EXPECT_GT(num_joins, 10);
@@ -147,7 +147,7 @@ TEST(CutBodies, EqualFreshOnesAndArchivedOnesAndCanBeUndone) {
             SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
             MovingBody body(family->data, fragments::default_light_share, seed);
             test::Random random(seed);
-            std::vector<FollowedEdit> edits;
+            std::vector<BodyEdit> edits;
             std::vector<ModelSnapshot> before;
             std::vector<double> gains;
             for (int i = 0; i < 3; ++i) {

@@ -90,13 +90,13 @@ TEST(Bisection, ChangesNoBitOfTheBody) {
             Model model(mesh, table, s);
             set_state(model, random_state(mesh, random, 0.02, 1.0));
             const ModelSnapshot before(model, 0.0);
-            const FollowedEdit first =
+            const BodyEdit first =
                 follow(model, bisect(mesh, random_edge(mesh, random), random.uniform(0.05, 0.95)));
-            const FollowedEdit second =
+            const BodyEdit second =
                 follow(model, bisect(mesh, random_edge(mesh, random), random.uniform(0.05, 0.95)));
             expect_equal(ModelSnapshot(model, 0.0), before);
             // The new node is where it was made.
-            const auto& born = first.changes.nodes_added.front();
+            const auto& born = first.material.nodes_added.front();
             Vec3 x = Vec3::Zero();
             for (std::size_t k = 0; k < 2; ++k)
                 x += born.sources[k].weight * model.mesh_positions()[born.sources[k].node.index()];
@@ -294,7 +294,7 @@ TEST(Bisection, AndJoiningTogetherKeepLoadsAndState) {
         edit.close(shared, other);
         if (!is_divided_first) divide(shared, 0, 1);
         const ChangeSet changes = edit.commit();
-        const FollowedEdit done = follow(model, changes);
+        const BodyEdit done = follow(model, changes);
         for (const VertexId n : mesh.nodes())
             EXPECT_LE((model.mesh_positions()[n.index()] - mesh.rest_position(n)).norm(), 1e-15);
         EXPECT_LE((sum_of(loads_at_rest(model)) - force).norm(), 1e-13 * force.norm());
@@ -317,7 +317,7 @@ TEST(Bisection, AddsNoForceToALoadOnNodes) {
     const Vec3 total = static_cast<double>(loaded.size()) * force;
     ASSERT_LE((sum_of(before) - total).norm(), 1e-12);
 
-    const FollowedEdit divided = follow(
+    const BodyEdit divided = follow(
         model, bisect(mesh,
                       edge_where(mesh, [&](const Vec3& a,
                                            const Vec3& b) { return is_loaded(a) && is_loaded(b); }),
@@ -326,7 +326,7 @@ TEST(Bisection, AddsNoForceToALoadOnNodes) {
     // Nor do copies add to the whole.
     MeshEdit edit(mesh);
     open_all_inner_faces(mesh, edit);
-    const FollowedEdit opened = follow(model, edit.commit());
+    const BodyEdit opened = follow(model, edit.commit());
     EXPECT_LE((sum_of(loads_at_rest(model)) - total).norm(), 1e-12);
     take_back(mesh, model, opened);
     take_back(mesh, model, divided);
@@ -388,7 +388,9 @@ TEST(Constraints, IndexedEditByEditEqualFreshOnes) {
         Model model(mesh, table_of_one_law(soft_law), s);
         const auto expect_equal_to_fresh_ones = [&](const ChangeSet& changes) {
             for (Constraint& constraint : constraints) constraint.nodes.apply(mesh, changes);
-            const Constraints fresh({mesh, model.fragments()}, constraints, model.positions());
+            const Constraints fresh(
+                {mesh, model.fragments(), model.elements(), model.masses(), model.positions()},
+                constraints);
             for (std::size_t n = 0; n < model.fragments().node_capacity(); ++n) {
                 const auto *a = model.constraints().of_node(n), *b = fresh.of_node(n);
                 ASSERT_EQ(a == nullptr, b == nullptr) << n;
@@ -396,11 +398,11 @@ TEST(Constraints, IndexedEditByEditEqualFreshOnes) {
             }
         };
         for (int i = 0; i < 200 && mesh.num_elements() > 0; ++i) {
-            const FollowedEdit done = follow(model, test::random_edit(mesh, random));
-            expect_equal_to_fresh_ones(done.changes);
+            const BodyEdit done = follow(model, test::random_edit(mesh, random));
+            expect_equal_to_fresh_ones(done.material);
             if (random.below(3) > 0) continue;
             take_back(mesh, model, done);
-            expect_equal_to_fresh_ones(inverse(done.changes));
+            expect_equal_to_fresh_ones(inverse(done.material));
         }
     }
 }

@@ -305,7 +305,7 @@ class FollowingBody {
         model_.set_history(model_.history().values());  // nothing is known any more
         model_.compute_totals_and_forces();
         if (step.fate == Fate::undo) {
-            model_.undo(mesh_.mesh(), followed_.back().changes, followed_.back().of_model);
+            model_.apply(mesh_.mesh(), inverse(followed_.back()));
             followed_.pop_back();
         } else {
             followed_.push_back(follow(model_, *changes));
@@ -343,8 +343,8 @@ class FollowingBody {
     EditedMesh mesh_;
     Acting acting_;
     Model model_;
-    std::vector<ModelSnapshot> before_;   // each edit that is done
-    std::vector<FollowedEdit> followed_;  // these edits
+    std::vector<ModelSnapshot> before_;  // each edit that is done
+    std::vector<BodyEdit> followed_;     // these edits
 };
 
 TEST(EditPrograms, KeepBodiesBalancedAndEqualToFreshOnes) {

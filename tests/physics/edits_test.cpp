@@ -97,7 +97,7 @@ class EditedBody {
         while (changes.is_empty()) changes = test::random_edit(mesh_, random_);
         ASSERT_EQ(topology::validate(mesh_), no_violations);
         compute_ahead();
-        const FollowedEdit done = follow(model_, changes);
+        const BodyEdit done = follow(model_, changes);
         ASSERT_EQ(fragments::validate(model_.fragments(), mesh_), no_violations);
         expect_balance(before, model_, done, carried);
         const MeshSnapshot mesh_after(mesh_);
@@ -112,7 +112,7 @@ class EditedBody {
         expect_equal(ModelSnapshot(model_, time), model_after);
 
         descent_.follow(changes);
-        const auto& born = done.of_model.fragments.mesh.nodes_added;
+        const auto& born = done.physics.mesh.nodes_added;
         nodes_born_.insert(nodes_born_.end(), born.begin(), born.end());
         expect_equal_to_a_fresh_model(model_after);
     }
@@ -126,7 +126,7 @@ class EditedBody {
 
     // So that the ids of the next edit have been others' before.
     void edit_and_take_back() {
-        const FollowedEdit done = follow(model_, test::random_edit(mesh_, random_));
+        const BodyEdit done = follow(model_, test::random_edit(mesh_, random_));
         compute_ahead();
         take_back(mesh_, model_, done);
     }
@@ -258,7 +258,7 @@ TEST(RandomEdits, UndoneLeaveTheMotionAsItWas) {
         test::Random random(5);
         const BodyState state = random_state(mesh, random, 0.0, 0.1);
 
-        std::vector<FollowedEdit> history;
+        std::vector<BodyEdit> history;
         for (int i = 0; i < 40 && mesh.num_elements() > 0; ++i)
             history.push_back(follow(model, test::random_edit(mesh, random)));
         for (; !history.empty(); history.pop_back()) take_back(mesh, model, history.back());
@@ -314,12 +314,12 @@ TEST(ModelApply, RefusesAnEditOutOfTurn) {
     EXPECT_THROW(model.apply(model.mesh(), second), InputError);  // the first is missing
     EXPECT_THROW(model.apply(model.mesh(), first), InputError);   // the mesh is further on
     replay(mesh, inverse(second));
-    const FollowedEdit done = follow(model, first);
-    EXPECT_THROW(model.apply(model.mesh(), first), InputError);        // a second time
-    EXPECT_THROW(model.undo(mesh, first, done.of_model), InputError);  // the mesh has not gone back
+    const BodyEdit done = follow(model, first);
+    EXPECT_THROW(model.apply(model.mesh(), first), InputError);  // a second time
+    EXPECT_THROW(model.apply(mesh, inverse(done)), InputError);  // the mesh has not gone back
     replay(mesh, inverse(first));
-    EXPECT_THROW(model.apply(mesh, inverse(first)), InputError);  // undo() is for that
-    model.undo(mesh, first, done.of_model);
+    EXPECT_THROW(model.apply(mesh, inverse(first)), InputError);  // a BodyEdit is for that
+    model.apply(mesh, inverse(done));
     expect_equal(ModelSnapshot(model, 0.0), before);
 }
 

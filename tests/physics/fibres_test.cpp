@@ -244,12 +244,12 @@ TEST(Fibres, DirectionsAreInheritedAndComeBack) {
     set_state(model, random_state(mesh, random, 0.02, 0.0));
     const std::vector<Vec3> first(model.fibres().begin(), model.fibres().end());
     ASSERT_EQ(first.size(), mesh.element_capacity());
-    std::vector<FollowedEdit> edits;
+    std::vector<BodyEdit> edits;
     std::size_t num_parts = 0;
     for (int i = 0; i < 60; ++i) {
         edits.push_back(follow(model, test::random_edit(mesh, random)));
         ASSERT_EQ(model.fibres().size(), model.fragments().element_capacity());
-        for (const auto& record : edits.back().of_model.fragments.mesh.elements_added)
+        for (const auto& record : edits.back().physics.mesh.elements_added)
             if (record.parent.is_valid()) {
                 ++num_parts;
                 EXPECT_EQ(model.fibres()[record.id.index()], model.fibres()[record.parent.index()]);

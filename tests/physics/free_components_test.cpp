@@ -26,9 +26,10 @@ Constraint hold(std::vector<std::size_t> nodes,
 
 std::vector<FreeComponent> free_components_of(const Mesh& mesh, const Constraint& constraint) {
     const fragments::FragmentMesh fragments(mesh);
+    const ElementStore elements(fragments, mesh, table_of_one_law(soft_law));
     return find_free_components(
         fragments, mesh.rest_positions(),
-        Constraints({mesh, fragments}, {constraint}, mesh.rest_positions()));
+        Constraints({mesh, fragments, elements, {}, mesh.rest_positions()}, {constraint}));
 }
 
 TEST(FreeComponents, AreNoneWhereAllNodesAreHeld) {
@@ -53,9 +54,10 @@ TEST(FreeComponents, MoveInAllWaysWhereNothingHoldsThem) {
     for_each_thin_tetrahedron([](const Tetrahedron& X, double) {
         const Mesh mesh = mesh_of(X);
         const fragments::FragmentMesh fragments(mesh);
-        const auto pieces =
-            find_free_components(fragments, mesh.rest_positions(),
-                                 Constraints({mesh, fragments}, {}, mesh.rest_positions()));
+        const ElementStore elements(fragments, mesh, table_of_one_law(soft_law));
+        const auto pieces = find_free_components(
+            fragments, mesh.rest_positions(),
+            Constraints({mesh, fragments, elements, {}, mesh.rest_positions()}, {}));
         ASSERT_EQ(pieces.size(), 1u);
         EXPECT_EQ(pieces[0].pins.size(), 6u);
     });

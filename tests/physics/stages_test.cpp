@@ -34,7 +34,7 @@ class Tethers final : public ForceTerm {
     }
     double stiffness_bound(NodeId) const override { return stiffness_; }
     void apply(const BodyView&, const BodyEdit& edit) override {
-        num_touched += edit.touched.size();
+        num_touched += edit.touched_nodes.size();
     }
 
     std::size_t num_touched = 0;

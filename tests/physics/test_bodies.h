@@ -139,18 +139,12 @@ inline void set_state(Model& model, const BodyState& state, double time = 0.0) {
     model.set_state(state.positions, state.velocities, time);
 }
 
-/// An edit that a model has followed.
-struct FollowedEdit {
-    topology::ChangeSet changes;
-    ModelChanges of_model;
-};
-inline FollowedEdit follow(Model& model, topology::ChangeSet changes) {
-    ModelChanges of_model = model.apply(model.mesh(), changes);
-    return {std::move(changes), std::move(of_model)};
+inline BodyEdit follow(Model& model, const topology::ChangeSet& changes) {
+    return model.apply(model.mesh(), changes);
 }
-inline void take_back(topology::Mesh& mesh, Model& model, const FollowedEdit& edit) {
-    replay(mesh, inverse(edit.changes));
-    model.undo(mesh, edit.changes, edit.of_model);
+inline void take_back(topology::Mesh& mesh, Model& model, const BodyEdit& edit) {
+    replay(mesh, inverse(edit.material));
+    model.apply(mesh, inverse(edit));
 }
 
 inline void step(Model& model, double& time, double dt) {

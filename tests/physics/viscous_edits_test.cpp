@@ -90,7 +90,7 @@ TEST(ViscousEdits, MatchFreshBodiesAndCanBeUndone) {
             const std::vector<Vec3> before = body.forces();
             const Memory history = body.history();
             const ChangeSet changes = test::random_edit(body.mesh, random);
-            const FollowedEdit done = follow(body.model, changes);
+            const BodyEdit done = follow(body.model, changes);
             const std::vector<Vec3> after = body.forces();
             const Memory history_after = body.history();
             take_back(body.mesh, body.model, done);

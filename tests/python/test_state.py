@@ -87,6 +87,48 @@ class State(unittest.TestCase):
         with self.assertRaisesRegex(incise.InputError, "no longer in its world"):
             hand.release()
 
+    def test_undo_goes_back_to_the_bits_of_before(self) -> None:
+        body = led_world()
+        body.tools["knife"].pose = incise.Pose([0.07, 0, 0.035])
+        body.run_until(0.003)
+        point, state, edits = body.undo_point(), body.save(), body.edits()
+        self.assertEqual(repr(point), f"<incise.UndoPoint at t = {body.time} s>")
+        versions = {body.topology_version}
+        ends = []
+        for _ in range(3):
+            go_on(body)
+            self.assertGreater(len(body.edits()), len(edits))
+            body.grasp("hand", np.flatnonzero(body.rest_positions[:, 0] > 0.1))
+            ends.append((body.save(), body.edits()))
+            self.assertNotIn(body.topology_version, versions)
+            versions.add(body.topology_version)
+            body.undo(point)
+            self.assertNotIn(body.topology_version, versions)
+            versions.add(body.topology_version)
+            self.assertEqual(body.save(), state)
+            self.assertEqual(body.edits(), edits)
+            self.assertEqual(list(body.constraints), ["clamp"])
+        self.assertEqual(ends[1:], ends[:1] * 2)
+
+    def test_undo_refuses_other_points_and_changes_nothing(self) -> None:
+        body, other = support.world(), support.world()
+        start = body.undo_point()
+        support.cut_through(body, 0.05)
+        later, state = body.undo_point(), body.save()
+        with self.assertRaisesRegex(incise.InputError, "another world"):
+            other.undo(start)
+        with self.assertRaises(TypeError):
+            body.undo(None)
+        self.assertEqual(body.save(), state)
+        with body.view(), self.assertRaises(BufferError):
+            body.undo(start)
+        body.undo(start)
+        with self.assertRaisesRegex(incise.InputError, "taken back"):
+            body.undo(later)
+        body.restore(state)
+        with self.assertRaisesRegex(incise.InputError, "restored"):
+            body.undo(start)
+
     def test_a_tool_leads_no_other_tool(self) -> None:
         body = support.world()
         empty = body.save()

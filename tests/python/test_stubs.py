@@ -13,8 +13,8 @@ import incise
 
 # What stubs of pybind11 cannot say: its metaclass, and that a class cannot be made by hand.
 ALLOWED = r"""
-incise\._incise\.(Constraint|CutResult|Load|Mesh|Physics|Pose|StepReport|Surface|Tool|View|World)
-incise\._incise\.(Constraint|CutResult|Load|Physics|StepReport|Surface|Tool|View)\.__init__
+incise\._incise\.(Constraint|CutResult|Load|Mesh|Physics|Pose|StepReport|Surface|Tool|UndoPoint|View|World)
+incise\._incise\.(Constraint|CutResult|Load|Physics|StepReport|Surface|Tool|UndoPoint|View)\.__init__
 """
 USE = """
 import incise
@@ -28,6 +28,8 @@ force: float = float(report.tool_forces["knife"][0])
 with body.view() as view:
     total = view.positions.sum()
 body.restore(body.save())
+point: incise.UndoPoint = body.undo_point()
+body.undo(point)
 env = incise.envs.PathIncisionEnv(depth=0.004)
 observation, info = env.reset(seed=1)
 """

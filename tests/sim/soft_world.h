@@ -4,8 +4,10 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "incise/sim/undo_point.h"
 #include "incise/sim/world.h"
 #include "incise/topology/box_mesh.h"
 
@@ -29,6 +31,34 @@ inline WorldDef soft_body(Solver solver = Solver::semi_implicit_euler) {
     def.damping = 2.0;
     def.solver = solver;
     return def;
+}
+
+/// Definitions of all that the state of a world can consist of.
+inline std::vector<std::pair<const char*, std::function<WorldDef()>>> resumable_bodies() {
+    const auto viscous = [](physics::PronyRule rule) {
+        WorldDef def = soft_body();
+        auto& links = std::get<physics::HyperElasticLinks>(def.materials[0].method);
+        links.prony = {{0.4, 0.05}, {0.2, 0.5}};
+        links.prony_rule = rule;
+        return def;
+    };
+    return {{"explicit", [] { return soft_body(); }},
+            {"implicit", [] { return soft_body(Solver::implicit_euler); }},
+            {"single precision",
+             [] {
+                 WorldDef def = soft_body();
+                 def.precision = physics::Precision::single_precision;
+                 return def;
+             }},
+            {"viscous", [=] { return viscous(physics::PronyRule::stress); }},
+            {"viscous by nodes", [=] { return viscous(physics::PronyRule::nodal); }},
+            {"hexahedra", [] {
+                 WorldDef def = soft_body();
+                 def.mesh = topology::box_mesh(topology::CellKind::hexahedron, Vec3::Zero(),
+                                               Vec3::Constant(size), {4, 4, 4});
+                 def.materials = {{1000.0, physics::HybridSprings{400.0, 400.0}}};
+                 return def;
+             }}};
 }
 
 inline std::vector<VertexId> nodes_where(const World& world,
@@ -93,14 +123,21 @@ class Session {
     /// Goes on from the state of any session of the same kind.
     void restore(const std::string& bytes) {
         world_.restore(bytes);
-        // Beside the floor there is the grasp, if anything.
-        grasp_ = world_.constraints().size() > 1 ? world_.constraints().back() : ConstraintId();
-        load_ = world_.loads().empty() ? LoadId() : world_.loads().back();
+        find_ids();
+    }
+    void undo(const UndoPoint& point) {
+        world_.undo(point);
+        find_ids();
     }
 
     static constexpr int num_steps = 60;
 
   private:
+    void find_ids() {
+        // Beside the floor there is the grasp, if anything.
+        grasp_ = world_.constraints().size() > 1 ? world_.constraints().back() : ConstraintId();
+        load_ = world_.loads().empty() ? LoadId() : world_.loads().back();
+    }
     void step(int i) {
         if (i == 5) world_.place_tool(knife_, scalpel_pose(0.0));
         if (i >= 5 && i < 35) world_.set_tool_pose(knife_, scalpel_pose((i - 4) / 30.0));

@@ -104,10 +104,10 @@ TEST(World, ReportsEditsThatMakeTheSameMeshElsewhere) {
         const StepReport& report = session.world().report();
         EXPECT_EQ(report.to, session.world().time());
         for (const Edit& edit : report.edits) {
-            topology::replay(copy, edit.changes);
-            surface.apply(copy, edit.changes);
+            topology::replay(copy, edit.body.material);
+            surface.apply(copy, edit.body.material);
             EXPECT_EQ(edit.record.tool, "scalpel");
-            EXPECT_EQ(edit.changes.elements_added.size(), edit.record.elements_added);
+            EXPECT_EQ(edit.body.material.elements_added.size(), edit.record.elements_added);
             ++num_edits;
         }
     }
@@ -117,34 +117,6 @@ TEST(World, ReportsEditsThatMakeTheSameMeshElsewhere) {
     EXPECT_TRUE(std::ranges::equal(surface.triangles(), session.world().surface().triangles()));
     EXPECT_GT(std::ranges::count(surface.is_cut(), 1), 20);
     EXPECT_LT(session.world().ledger().mass_error(), 1e-12);
-}
-
-/// Definitions of all that the state of a world can consist of.
-std::vector<std::pair<const char*, std::function<WorldDef()>>> resumable_bodies() {
-    const auto viscous = [](physics::PronyRule rule) {
-        WorldDef def = soft_body();
-        auto& links = std::get<physics::HyperElasticLinks>(def.materials[0].method);
-        links.prony = {{0.4, 0.05}, {0.2, 0.5}};
-        links.prony_rule = rule;
-        return def;
-    };
-    return {{"explicit", [] { return soft_body(); }},
-            {"implicit", [] { return soft_body(Solver::implicit_euler); }},
-            {"single precision",
-             [] {
-                 WorldDef def = soft_body();
-                 def.precision = physics::Precision::single_precision;
-                 return def;
-             }},
-            {"viscous", [=] { return viscous(physics::PronyRule::stress); }},
-            {"viscous by nodes", [=] { return viscous(physics::PronyRule::nodal); }},
-            {"hexahedra", [] {
-                 WorldDef def = soft_body();
-                 def.mesh = topology::box_mesh(topology::CellKind::hexahedron, Vec3::Zero(),
-                                               Vec3::Constant(size), {4, 4, 4});
-                 def.materials = {{1000.0, physics::HybridSprings{400.0, 400.0}}};
-                 return def;
-             }}};
 }
 
 TEST(World, ResumesFromSavedBytesToTheBit) {
