@@ -394,8 +394,8 @@ tools; its mesh may be another. Raises InputError, and changes nothing, for othe
             },
             R"(Return the present moment, an UndoPoint, to which undo() can go back.
 
-It costs about a step, much less than save(): the world keeps the edits since then, until all points
-from before them are gone.)")
+It costs a few steps at most, and less than save(). The world keeps the edits since then, until all
+points from before them are gone.)")
         .def(
             "undo",
             [](const World& world, const std::shared_ptr<UndoPoint>& point) {
@@ -407,8 +407,9 @@ from before them are gone.)")
 constraints, loads and time what they had.
 
 point: from undo_point(). save() then returns the bytes of that moment, and later steps give the
-same bits. It costs what the edits since then cost, and some steps: tens of times less than
-restore(). It also brings a world back that has failed. The same point can be used again.
+same bits. It costs some steps, and for each element that was cut since then about 0.05 ms: little
+after a short stroke, more than restore() after a cut through a whole organ. It also brings a world
+back that has failed. The same point can be used again.
 
 Raises InputError, and changes nothing, for a point of another world, for one after an edit that was
 taken back, and for one from before restore().

@@ -22,6 +22,13 @@
 
 namespace incise::python {
 
+/// A moment of a driver to which it can go back: see sim::UndoPoint.
+struct UndoPoint {
+    sim::UndoPoint world;
+    std::string driver;  ///< what the driver remembers beside the world
+    double time = 0.0;   ///< s
+};
+
 /// The tools that tissue exerts a known force on, in the order of World::tools().
 struct FeelingTools {
     std::vector<sim::ToolId> ids;
@@ -48,13 +55,6 @@ struct NamedConstraint {
     std::optional<Pose> target;     ///< of a grasp, at the end of the next call
     std::optional<Pose> from = {};  ///< of a grasp with a target, at the beginning of the call
     static void archive(auto& ar, auto& self) { ar(self.name, self.pose, self.target); }
-};
-
-/// A moment of a driver to which it can go back: see sim::UndoPoint.
-struct UndoPoint {
-    sim::UndoPoint world;
-    std::string driver;  ///< what the driver remembers beside the world
-    double time = 0.0;   ///< s
 };
 
 /// A world, its scenario, and what leads its tools.
