@@ -108,7 +108,8 @@ EditRecord Ledger::record(double time, std::uint64_t step, const std::string& to
         if (cell.is_released) edit.volume_released += volume;
     }
     edit.before = before;
-    apply(changes);
+    counts_ = count();
+    components_.apply(model_.mesh(), changes);
     assert(components_.value() == topology::components(model_.mesh()).count);
     edit.after = last_ = body_totals();
     const auto energy = [](const BodyTotals& a) {
@@ -120,9 +121,10 @@ EditRecord Ledger::record(double time, std::uint64_t step, const std::string& to
     return edit;
 }
 
-void Ledger::apply(const topology::ChangeSet& changes) {
+void Ledger::restore(ArchiveReader& ar) {
+    list(ar, *this);
     counts_ = count();
-    components_.apply(model_.mesh(), changes);
+    components_.restore(model_.mesh(), last_.components);
 }
 
 double Ledger::mass_error() const {

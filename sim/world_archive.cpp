@@ -100,7 +100,6 @@ void World::Parts::go_back(std::span<const physics::BodyEdit* const> edits, Arch
         topology::replay(mesh, back.material);
         model.apply(mesh, back);
         if (surface) surface->apply(mesh, back.material);
-        ledger.apply(back.material);
     }
     time = read_time(ar);
     model.restore_motion(ar, time);

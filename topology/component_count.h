@@ -28,6 +28,12 @@ class ComponentCount {
     /// Where they are not connected, the search also covers the smaller components.
     void apply(const Mesh& mesh, const ChangeSet& changes);
 
+    /// Goes to a state of the mesh of which the number is known.
+    void restore(const Mesh& mesh, int value) {
+        value_ = value;
+        epoch_ = FollowedEpoch(mesh);
+    }
+
   private:
     /// Returns sets of those touched elements, by their index in `touched`, that are connected by
     /// faces which the edit did not change. The search ends when the components can be counted.

@@ -82,12 +82,19 @@ class MeshReplay {
         std::sort(touched.begin(), touched.end());
         std::vector<CellId> star;
         for (std::size_t i = 0; i < touched.size(); ++i) {
-            const auto [n, e] = touched[i];
+            const auto [n, lowest_touched] = touched[i];
             if (i > 0 && touched[i - 1].first == n) continue;
-            star.clear();
-            collect_star(mesh_, n, e, star);
-            mesh_.incident_elements_[n.index()] = star.front();
-            mesh_.map_.set_incident_element(n, star.front(), mesh_.corner_of(star.front(), n));
+            // A cell that has come to the star is a touched one. So the lowest cell is the former
+            // one or a touched one, or else, where the former one has gone, the star tells.
+            CellId& lowest = mesh_.incident_elements_[n.index()];
+            if (!lowest.is_valid() || lowest_touched < lowest) {
+                lowest = lowest_touched;
+            } else if (!mesh_.is_alive(lowest) || mesh_.corner_of(lowest, n) < 0) {
+                star.clear();
+                collect_star(mesh_, n, lowest_touched, star);
+                lowest = star.front();
+            }
+            mesh_.map_.set_incident_element(n, lowest, mesh_.corner_of(lowest, n));
         }
     }
 

@@ -239,7 +239,6 @@ void Constraints::apply(const BodyView& body, const BodyEdit& edit) {
                 gripped.try_emplace(record.id, source->second);
         }
     }
-    if (edit.goes_back()) return index_all(body);
     row_of_node_.resize(of_fragments.node_capacity_after, -1);
     if (constraints_.empty()) return;
     for (const NodeId n : edit.touched_nodes) {
