@@ -56,19 +56,14 @@ std::string fault_of_toughness(const cutting::Blade& blade, const physics::Mater
 
 BladeContact::BladeContact(cutting::Blade blade, double size)
     : blade_(std::move(blade)), size_(size) {
-    divide_edge();
-    directions_.resize(pieces_.size(), Vec3::Zero());
-    impulses_.resize(pieces_.size(), 0.0);
-}
-
-void BladeContact::divide_edge() {
-    pieces_.clear();
     for (std::size_t i = 1; i < blade_.edge.size(); ++i) {
         const Vec3 &from = blade_.edge[i - 1], way = blade_.edge[i] - from;
         const double count = std::ceil(way.norm() / (longest_piece * size_));
         for (double k = 0.5; k < count; k += 1.0)
             pieces_.push_back({from + k / count * way, way / count});
     }
+    directions_.resize(pieces_.size(), Vec3::Zero());
+    impulses_.resize(pieces_.size(), 0.0);
 }
 
 void BladeContact::move(const physics::Model& model, const Pose& before, const Pose& after,
@@ -136,9 +131,8 @@ ToolImpulse BladeContact::take_impulses(const ContactSolver& solver, double dt) 
     return sum;
 }
 
-void BladeContact::take_shape(const cutting::ToolShape& shape) {
-    blade_ = std::get<cutting::Blade>(shape);
-    divide_edge();
+void BladeContact::restore(ArchiveReader& ar) {
+    list(ar, *this);
     const bool fits =
         directions_.size() == pieces_.size() && impulses_.size() == pieces_.size() &&
         std::ranges::all_of(directions_, [](const Vec3& v) { return v.allFinite(); }) &&

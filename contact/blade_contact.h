@@ -14,7 +14,7 @@
 #include "incise/base/archive.h"
 #include "incise/contact/contact_solver.h"
 #include "incise/contact/surface_tree.h"
-#include "incise/contact/tool_impulse.h"
+#include "incise/contact/tool_contact.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/physics/body/model.h"
 #include "incise/topology/cell_point.h"
@@ -39,7 +39,7 @@ std::string fault_of_toughness(const cutting::Blade& blade, const physics::Mater
 ///
 /// If the force is applied, a piece carries the tissue at it along until that takes more than its
 /// force; then the tissue slips past the piece, and is cut.
-class BladeContact {
+class BladeContact final : public ToolContact {
   public:
     /// @param size  mean length of an element at rest, m: pieces are parts of it
     BladeContact(cutting::Blade blade, double size);
@@ -47,25 +47,16 @@ class BladeContact {
     /// Sets the motion of the blade in the next step, and finds the tissue at its edge.
     void move(const physics::Model& model, const Pose& before, const Pose& after,
               const TissueAt& tissue_at);
-    void move(const Pose&, const Pose&) {}
-    void follow(const physics::Model&) {}
-
+    void follow(const physics::Model&) override {}
     /// Adds the points at which the force is applied to the solver, or sums what is reported.
-    /// @param dt  s
     void add_points(const physics::Model& model, const TissueSurface& surface, double dt,
-                    ContactSolver& solver);
-    /// Returns what the edge exerts by the points that add_points() added.
-    ToolImpulse take_impulses(const ContactSolver& solver, double dt);
-    /// Returns what the edge would exert in this step if its force is only reported.
-    const ToolImpulse& reported() const { return reported_; }
-    double max_penetration() const { return 0.0; }
+                    ContactSolver& solver) override;
+    ToolImpulse take_impulses(const ContactSolver& solver, double dt) override;
+    ToolImpulse reported() const override { return reported_; }
 
-    void save(ArchiveWriter& ar) const { list(ar, *this); }
-    /// Restores what save() wrote.
-    void restore(ArchiveReader& ar) { list(ar, *this); }
-    /// Takes the shape of the tool after restore(), which does not read it. Throws InputError if
-    /// what was restored is that of another blade.
-    void take_shape(const cutting::ToolShape& shape);
+    void save(ArchiveWriter& ar) const override { list(ar, *this); }
+    /// Restores what save() wrote. Throws InputError for the data of another blade.
+    void restore(ArchiveReader& ar);
 
   private:
     /// A short part of the edge.
@@ -80,7 +71,6 @@ class BladeContact {
         double width;        ///< across its way, m
     };
     static void list(auto& ar, auto& self) { ar(self.directions_, self.impulses_); }
-    void divide_edge();
 
     cutting::Blade blade_;
     double size_;

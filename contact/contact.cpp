@@ -10,87 +10,6 @@
 
 namespace incise::contact {
 
-namespace {
-
-/// Returns the alternative of Contact::Tool::contact for a shape that feels a force.
-std::size_t kind_of(const cutting::ToolShape& shape) {
-    if (std::holds_alternative<cutting::Grasper>(shape)) return 1;
-    if (std::holds_alternative<cutting::Suture>(shape)) return 2;
-    return std::holds_alternative<cutting::Blade>(shape) ? 3 : 0;
-}
-
-}  // namespace
-
-void Contact::follow(const physics::Model& model, const topology::BoundarySurface& surface) {
-    tissue_.know_surface(model, surface);
-    for (auto& [number, tool] : tools_)
-        std::visit([&](auto& contact) { contact.follow(model); }, tool.contact);
-}
-
-Contact::Tool& Contact::tool_of(std::size_t tool, const cutting::ToolShape& shape) {
-    const auto known = tools_.find(tool);
-    if (known != tools_.end()) return known->second;
-    const auto come = [&](auto contact) -> Tool& {
-        return tools_.try_emplace(tool, Tool{std::move(contact)}).first->second;
-    };
-    if (const auto* grasper = std::get_if<cutting::Grasper>(&shape))
-        return come(GraspContact(*grasper, size()));
-    if (const auto* suture = std::get_if<cutting::Suture>(&shape))
-        return come(SutureContact(*suture, size()));
-    if (const auto* blade = std::get_if<cutting::Blade>(&shape))
-        return come(BladeContact(*blade, size()));
-    return come(RigidContact(std::get<cutting::Probe>(shape), size()));
-}
-
-void Contact::move_tool(std::size_t tool, const cutting::ToolShape& shape, const Pose& before,
-                        const Pose& after) {
-    std::visit([&](auto& contact) { contact.move(before, after); }, tool_of(tool, shape).contact);
-}
-
-void Contact::move_blade(std::size_t tool, const cutting::Blade& blade, const physics::Model& model,
-                         const Pose& before, const Pose& after, const TissueAt& tissue_at) {
-    std::get<BladeContact>(tool_of(tool, blade).contact).move(model, before, after, tissue_at);
-}
-
-void Contact::tie(std::size_t tool, const cutting::Suture& suture, const physics::Model& model) {
-    std::get<SutureContact>(tool_of(tool, suture).contact).tie(model);
-}
-
-void Contact::draw(std::size_t tool, double length) {
-    const auto it = tools_.find(tool);
-    if (it != tools_.end()) std::get<SutureContact>(it->second.contact).draw(length);
-}
-
-double Contact::thread_length(std::size_t tool) const {
-    const auto it = tools_.find(tool);
-    return it == tools_.end() ? 0.0 : std::get<SutureContact>(it->second.contact).length();
-}
-
-void Contact::close(std::size_t tool, const cutting::Grasper& grasper, const physics::Model& model,
-                    const Pose& pose) {
-    std::get<GraspContact>(tool_of(tool, grasper).contact)
-        .close(model, tissue_.surface().triangles, pose);
-}
-
-void Contact::open(std::size_t tool) {
-    const auto it = tools_.find(tool);
-    if (it != tools_.end()) std::get<GraspContact>(it->second.contact).open();
-}
-
-std::size_t Contact::num_held(std::size_t tool) const {
-    const auto it = tools_.find(tool);
-    if (it == tools_.end()) return 0;
-    if (const auto* grasp = std::get_if<GraspContact>(&it->second.contact))
-        return grasp->num_held();
-    const auto* suture = std::get_if<SutureContact>(&it->second.contact);
-    return suture ? suture->num_held() : 0;
-}
-
-ToolImpulse Contact::take_impulse(std::size_t tool) {
-    const auto it = tools_.find(tool);
-    return it == tools_.end() ? ToolImpulse() : std::exchange(it->second.impulse, {});
-}
-
 bool Contact::prepare(const physics::Model& model, double /*time*/, double dt) {
     solver_.clear();
     num_points_ = 0;
@@ -99,17 +18,12 @@ bool Contact::prepare(const physics::Model& model, double /*time*/, double dt) {
     last_dt_ = dt;
     tissue_.add_points(model, solver_);
     max_penetration_ = tissue_.max_penetration();
-    for (auto& [number, tool] : tools_) {
-        std::visit(
-            [&](auto& contact) {
-                contact.add_points(model, tissue_.surface(), dt, solver_);
-                max_penetration_ = std::max(max_penetration_, contact.max_penetration());
-            },
-            tool.contact);
-        if (const auto* blade = std::get_if<BladeContact>(&tool.contact)) {
-            tool.impulse += blade->reported();
-            fracture_energy_ += blade->reported().fracture;
-        }
+    for (ToolContact* tool : tools_) {
+        tool->add_points(model, tissue_.surface(), dt, solver_);
+        max_penetration_ = std::max(max_penetration_, tool->max_penetration());
+        const ToolImpulse reported = tool->reported();
+        tool->add(reported);
+        fracture_energy_ += reported.fracture;
     }
     start_velocities_.clear();
     for (const NodeId node : solver_.nodes())
@@ -122,10 +36,9 @@ bool Contact::prepare(const physics::Model& model, double /*time*/, double dt) {
 
 void Contact::take_impulses(double dt) {
     tissue_.take_impulses(solver_);
-    for (auto& [number, tool] : tools_) {
-        const ToolImpulse done = std::visit(
-            [&](auto& contact) { return contact.take_impulses(solver_, dt); }, tool.contact);
-        tool.impulse += done;
+    for (ToolContact* tool : tools_) {
+        const ToolImpulse done = tool->take_impulses(solver_, dt);
+        tool->add(done);
         tool_work_ += done.work;
         fracture_ += done.fracture;
     }
@@ -190,24 +103,9 @@ void Contact::book_work(physics::Model& model) {
     fracture_energy_ += fracture_;
 }
 
-void Contact::take_shapes(std::span<const cutting::ToolShape* const> shapes) {
-    for (auto& [number, tool] : tools_) {
-        if (number >= shapes.size() || !cutting::feels_force(*shapes[number]) ||
-            kind_of(*shapes[number]) != tool.contact.index())
-            throw InputError("its contact has tools that it does not have");
-        const cutting::ToolShape& shape = *shapes[number];
-        std::visit([&](auto& contact) { contact.take_shape(shape); }, tool.contact);
-    }
-}
-
 void Contact::save(ArchiveWriter& ar) const {
     ar(dissipation_, fracture_energy_, num_points_, max_penetration_, spare_energy_, node_forces());
     tissue_.save(ar);
-    ar(static_cast<std::uint64_t>(tools_.size()));
-    for (const auto& [number, tool] : tools_) {
-        ar(static_cast<std::uint64_t>(number), static_cast<std::uint64_t>(tool.contact.index()));
-        std::visit([&](const auto& contact) { contact.save(ar); }, tool.contact);
-    }
 }
 
 void Contact::restore(ArchiveReader& ar, const physics::Model& model,
@@ -223,19 +121,6 @@ void Contact::restore(ArchiveReader& ar, const physics::Model& model,
             throw InputError("its contact has forces on another body");
     tissue_.restore(ar, model, surface);
     solver_ = ContactSolver(tissue_.size());
-    for (auto count = ar.read<std::uint64_t>(); count > 0; --count) {
-        const auto number = ar.read<std::uint64_t>();
-        const auto kind = ar.read<std::uint64_t>();
-        const auto come = [&](auto contact, const auto&... arguments) {
-            contact.restore(ar, arguments...);
-            tools_.insert_or_assign(number, Tool{std::move(contact)});
-        };
-        if (kind == 0) come(RigidContact({}, size()), tissue_.surface().triangles.size());
-        if (kind == 1) come(GraspContact({}, size()), model);
-        if (kind == 2) come(SutureContact({}, size()), model);
-        if (kind == 3) come(BladeContact({}, size()));
-        if (kind > 3) throw InputError("its contact has a tool of an unknown kind");
-    }
 }
 
 }  // namespace incise::contact

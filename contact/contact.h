@@ -4,18 +4,13 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <span>
 #include <utility>
-#include <variant>
 #include <vector>
 
-#include "incise/contact/blade_contact.h"
 #include "incise/contact/contact_solver.h"
-#include "incise/contact/grasp_contact.h"
-#include "incise/contact/rigid_contact.h"
 #include "incise/contact/surface_contact.h"
-#include "incise/contact/suture_contact.h"
+#include "incise/contact/tool_contact.h"
 #include "incise/physics/solve/integrator.h"
 #include "incise/topology/boundary_surface.h"
 
@@ -31,32 +26,13 @@ class Contact final : public physics::VelocityProjection {
 
     /// Follows the edits of a step, or begins.
     /// @param surface  of the body
-    void follow(const physics::Model& model, const topology::BoundarySurface& surface);
-
-    /// Sets the motion of a probe or a grasper in the next step. A tool that is not known yet
-    /// comes.
-    /// @param tool  its number
-    void move_tool(std::size_t tool, const cutting::ToolShape& shape, const Pose& before,
-                   const Pose& after);
-    /// The same for a blade that feels a force.
-    void move_blade(std::size_t tool, const cutting::Blade& blade, const physics::Model& model,
-                    const Pose& before, const Pose& after, const TissueAt& tissue_at);
-    /// Passes a thread through the tissue.
-    void tie(std::size_t tool, const cutting::Suture& suture, const physics::Model& model);
-    /// Sets the length of a thread at the end of the next step, m.
-    void draw(std::size_t tool, double length);
-    /// Returns the length of a thread without tension, m.
-    double thread_length(std::size_t tool) const;
-    /// Closes or opens the jaws of a grasper.
-    void close(std::size_t tool, const cutting::Grasper& grasper, const physics::Model& model,
-               const Pose& pose);
-    void open(std::size_t tool);
-    /// Returns how many points a grasper holds, or a thread passes through.
-    std::size_t num_held(std::size_t tool) const;
-    /// Takes a tool away.
-    void remove_tool(std::size_t tool) { tools_.erase(tool); }
-    /// Returns what a tool has exerted since the last call.
-    ToolImpulse take_impulse(std::size_t tool);
+    void follow(const physics::Model& model, const topology::BoundarySurface& surface) {
+        tissue_.know_surface(model, surface);
+    }
+    /// Begins the list of the tools that touch the tissue in the next step.
+    void begin_tools() { tools_.clear(); }
+    /// Adds a tool to the list. It must live until that step is over.
+    void add_tool(ToolContact& tool) { tools_.push_back(&tool); }
     /// Counts the work of the impulses of the last step: that of the tools as external, the rest as
     /// dissipated. Call it after each step.
     void book_work(physics::Model& model);
@@ -64,6 +40,8 @@ class Contact final : public physics::VelocityProjection {
     bool prepare(const physics::Model& model, double time, double dt) override;
     void project(physics::Model& model, double time, double dt) override;
 
+    /// Returns the triangles of the body.
+    TissueSurface surface() const { return tissue_.surface(); }
     const ContactSettings& settings() const { return tissue_.settings(); }
     double size() const { return tissue_.size(); }
     /// Returns the number of points of contact with an impulse in the last step.
@@ -86,20 +64,11 @@ class Contact final : public physics::VelocityProjection {
     void restore(ArchiveReader& ar, const physics::Model& model,
                  const topology::BoundarySurface& surface);
 
-    /// Gives the tools that restore() has read their shapes, by their numbers. Call it after
-    /// restore(). Throws InputError for a tool without a shape of its kind.
-    void take_shapes(std::span<const cutting::ToolShape* const> shapes);
-
   private:
-    struct Tool {
-        std::variant<RigidContact, GraspContact, SutureContact, BladeContact> contact;
-        ToolImpulse impulse = {};
-    };
-    Tool& tool_of(std::size_t tool, const cutting::ToolShape& shape);
     void take_impulses(double dt);
     double normal_work(const physics::Model& model) const;
     SurfaceContact tissue_;
-    std::map<std::size_t, Tool> tools_;
+    std::vector<ToolContact*> tools_;  // of a step
     ContactSolver solver_{tissue_.size()};
     std::size_t num_points_ = 0;
     double max_penetration_ = 0.0;  // m

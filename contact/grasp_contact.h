@@ -12,7 +12,7 @@
 #include "incise/base/archive.h"
 #include "incise/contact/contact_solver.h"
 #include "incise/contact/surface_tree.h"
-#include "incise/contact/tool_impulse.h"
+#include "incise/contact/tool_contact.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/physics/body/model.h"
 #include "incise/topology/pose.h"
@@ -22,7 +22,7 @@ namespace incise::contact {
 /// Points of the surface that jaws hold. Each moves with the jaws, as long as that takes no more
 /// than its share of the largest force. Above it the point slips, and one that leaves the jaws is
 /// let go.
-class GraspContact {
+class GraspContact final : public ToolContact {
   public:
     /// @param size  mean length of an element at rest, m
     GraspContact(cutting::Grasper grasper, double size)
@@ -40,25 +40,15 @@ class GraspContact {
     void open() { held_.clear(); }
     std::size_t num_held() const { return held_.size(); }
     /// Lets go what an edit has removed.
-    void follow(const physics::Model& model);
-
-    /// Adds the points that are held to the solver.
-    /// @param dt  s
+    void follow(const physics::Model& model) override;
+    /// The points are those that are held.
     void add_points(const physics::Model& model, const TissueSurface& surface, double dt,
-                    ContactSolver& solver);
-    /// Takes the impulses of the points that add_points() added, and returns what the jaws exert by
-    /// them.
-    /// @param dt  s
-    ToolImpulse take_impulses(const ContactSolver& solver, double dt);
-    double max_penetration() const { return 0.0; }
+                    ContactSolver& solver) override;
+    ToolImpulse take_impulses(const ContactSolver& solver, double dt) override;
 
-    void save(ArchiveWriter& ar) const { list(ar, *this); }
+    void save(ArchiveWriter& ar) const override { list(ar, *this); }
     /// Restores what save() wrote. Throws InputError for the data of another body.
     void restore(ArchiveReader& ar, const physics::Model& model);
-    /// Takes the shape of the tool after restore(), which does not read it.
-    void take_shape(const cutting::ToolShape& shape) {
-        grasper_ = std::get<cutting::Grasper>(shape);
-    }
 
   private:
     /// A point of the surface.

@@ -24,9 +24,8 @@ constexpr double deep_overlap = 0.02;  // below which one is looked at twice
 
 }  // namespace
 
-void RigidContact::prepare_shape() {
-    reach_ = cutting::reach_of(probe_.shape);
-    solid_ = nullptr;
+RigidContact::RigidContact(cutting::Probe probe, double size)
+    : probe_(std::move(probe)), size_(size), reach_(cutting::reach_of(probe_.shape)) {
     if (const auto* solid = std::get_if<cutting::Solid>(&probe_.shape))
         solid_ = std::make_shared<const RigidSolid>(*solid);
     if (const auto* box = std::get_if<cutting::Cuboid>(&probe_.shape))
@@ -143,7 +142,8 @@ ToolImpulse RigidContact::take_impulses(const ContactSolver& solver, double /*dt
     return sum;
 }
 
-void RigidContact::restore(ArchiveReader& ar, std::size_t num_triangles) {
+void RigidContact::restore(ArchiveReader& ar, const TissueSurface& surface) {
+    const std::size_t num_triangles = surface.triangles.size();
     list(ar, *this);
     const bool fits =
         std::ranges::all_of(triangles_, [&](std::uint32_t t) { return t < num_triangles; }) &&
@@ -151,11 +151,6 @@ void RigidContact::restore(ArchiveReader& ar, std::size_t num_triangles) {
         std::ranges::is_sorted(last_features_) &&
         std::ranges::all_of(last_impulses_, [](const Vec3& v) { return v.allFinite(); });
     if (!fits) throw InputError("its tools touch another body");
-}
-
-void RigidContact::take_shape(const cutting::ToolShape& shape) {
-    probe_ = std::get<cutting::Probe>(shape);
-    prepare_shape();
 }
 
 }  // namespace incise::contact

@@ -16,7 +16,7 @@
 #include "incise/contact/rigid_solid.h"
 #include "incise/contact/rigid_touch.h"
 #include "incise/contact/surface_contact.h"
-#include "incise/contact/tool_impulse.h"
+#include "incise/contact/tool_contact.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/physics/body/model.h"
 #include "incise/topology/pose.h"
@@ -25,38 +25,29 @@ namespace incise::contact {
 
 /// Points of contact of a rigid tool with the faces of a body. A vertex or an edge of the surface
 /// that several triangles share counts once.
-class RigidContact {
+class RigidContact final : public ToolContact {
   public:
     /// @param size  mean length of an element at rest, m: distances are parts of it
-    RigidContact(cutting::Probe probe, double size) : probe_(std::move(probe)), size_(size) {
-        prepare_shape();
-    }
+    RigidContact(cutting::Probe probe, double size);
 
     /// Sets the motion of the tool in the next step.
     void move(const Pose& before, const Pose& after) {
         before_ = before;
         after_ = after;
     }
-    /// Takes note of an edit of the surface.
-    void follow(const physics::Model&) { room_ = -1.0; }
-
+    void follow(const physics::Model&) override { room_ = -1.0; }
     /// Finds the points of contact at the present positions, and adds them to the solver.
     /// Cost: that of the triangles near the tool. Now and then, when tool and tissue have moved by
     /// a part of an element, O(n) in the triangles of the surface.
-    /// @param surface  triangles of the body
-    /// @param dt       s
     void add_points(const physics::Model& model, const TissueSurface& surface, double dt,
-                    ContactSolver& solver);
-    /// Takes the impulses of the points that add_points() added, and returns what the tool exerts
-    /// by them. The next step begins with them.
-    ToolImpulse take_impulses(const ContactSolver& solver, double dt);
-    double max_penetration() const { return max_penetration_; }
+                    ContactSolver& solver) override;
+    /// The next step begins with the impulses of this one.
+    ToolImpulse take_impulses(const ContactSolver& solver, double dt) override;
+    double max_penetration() const override { return max_penetration_; }
 
-    void save(ArchiveWriter& ar) const { list(ar, *this); }
+    void save(ArchiveWriter& ar) const override { list(ar, *this); }
     /// Restores what save() wrote. Throws InputError for the data of another body.
-    void restore(ArchiveReader& ar, std::size_t num_triangles);
-    /// Takes the shape of the tool after restore(), which does not read it.
-    void take_shape(const cutting::ToolShape& shape);
+    void restore(ArchiveReader& ar, const TissueSurface& surface);
 
   private:
     /// What tells one point from another.
@@ -69,7 +60,6 @@ class RigidContact {
     static void list(auto& ar, auto& self) {
         ar(self.triangles_, self.room_, self.last_features_, self.last_impulses_);
     }
-    void prepare_shape();
     static Feature feature_of(const Triangle& triangle, const RigidTouch& touch);
     Vec3 last_impulse_at(const Feature& feature) const;
     double largest_move() const;
@@ -80,7 +70,7 @@ class RigidContact {
     cutting::Probe probe_;
     double size_;
     std::shared_ptr<const RigidSolid> solid_;  // if the shape is one, or a box
-    double reach_ = 0.0;                       // of the shape, m
+    double reach_;                             // of the shape, m
     Pose before_, after_;
     std::vector<std::uint32_t> triangles_;  // near the tool
     double room_ = -1.0;  // how far both may move before triangles_ is out of date, m

@@ -11,7 +11,7 @@
 #include "incise/base/archive.h"
 #include "incise/contact/contact_solver.h"
 #include "incise/contact/surface_tree.h"
-#include "incise/contact/tool_impulse.h"
+#include "incise/contact/tool_contact.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/physics/body/model.h"
 #include "incise/topology/cell_point.h"
@@ -21,13 +21,11 @@ namespace incise::contact {
 
 /// A thread that passes through points of the tissue without friction. It pulls them together as
 /// soon as its way is longer than it is itself.
-class SutureContact {
+class SutureContact final : public ToolContact {
   public:
     /// @param size  mean length of an element at rest, m
     SutureContact(cutting::Suture suture, double size) : suture_(std::move(suture)), size_(size) {}
 
-    /// A thread has no pose.
-    void move(const Pose&, const Pose&) {}
     /// Passes the thread through the tissue. It is then as long as its way. A point without tissue
     /// in reach is left out. Cost: O(n) for each point.
     void tie(const physics::Model& model);
@@ -38,23 +36,17 @@ class SutureContact {
     /// Returns through how many points the thread passes. It pulls if there are two or more.
     std::size_t num_held() const { return stitches_.size(); }
     /// Follows an edit. A point that an edit has removed is left out from then on.
-    void follow(const physics::Model& model);
-
+    void follow(const physics::Model& model) override;
     /// Adds the thread to the solver.
-    /// @param dt  s
     void add_points(const physics::Model& model, const TissueSurface& surface, double dt,
-                    ContactSolver& solver);
-    /// Takes the tension of the thread. Returns its pull on the first point. A thread that has
-    /// borne its largest force tears.
-    /// @param dt  s
-    ToolImpulse take_impulses(const ContactSolver& solver, double dt);
-    double max_penetration() const { return 0.0; }
+                    ContactSolver& solver) override;
+    /// Returns the pull of the thread on its first point. A thread that has borne its largest force
+    /// tears.
+    ToolImpulse take_impulses(const ContactSolver& solver, double dt) override;
 
-    void save(ArchiveWriter& ar) const { list(ar, *this); }
+    void save(ArchiveWriter& ar) const override { list(ar, *this); }
     /// Restores what save() wrote. Throws InputError for the data of another body.
     void restore(ArchiveReader& ar, const physics::Model& model);
-    /// Takes the shape of the tool after restore(), which does not read it.
-    void take_shape(const cutting::ToolShape& shape) { suture_ = std::get<cutting::Suture>(shape); }
 
   private:
     /// Where the thread passes through the tissue.

@@ -109,7 +109,7 @@ void Session::require_sensible(const scenario::Value& value) const {
 /// parts it refuses. A tick has at least one step.
 void Session::require_near(const cutting::ToolShape& shape, const Pose& from,
                            const Pose& to) const {
-    if (cutting::cuts(shape)) return;
+    if (cutting::traits_of(shape).cuts) return;
     constexpr double part = 0.25, most_parts = 900.0;  // of an element, or of the probe
     double move = (to.position - from.position).norm(), size = element_size_;
     if (const auto* probe = std::get_if<cutting::Probe>(&shape)) {

@@ -28,13 +28,6 @@ WorldDriver& driver_of(const Tool& tool) {
     return driver;
 }
 
-const char* kind_of(const cutting::ToolShape& shape) {
-    static constexpr const char* names[] = {"blade", "carver",  "cut",   "cut",
-                                            "probe", "grasper", "suture"};
-    static_assert(std::variant_size_v<cutting::ToolShape> == std::size(names));
-    return names[shape.index()];
-}
-
 const NamedConstraint& find(const Constraint& constraint) {
     const auto& all = driver_of(constraint.world).constraints();
     const auto found = std::ranges::find(all, constraint.name, &NamedConstraint::name);
@@ -54,7 +47,8 @@ InputError for a tool of the wrong kind, and incise.Error while another thread u
     forbid_copies(type, "keep its name");
     type.def_property_readonly("name", held(&Tool::name), "The name of the tool.")
         .def_property_readonly("kind", held(+[](const Tool& tool) {
-                                   return kind_of(driver_of(tool).world().tool(tool.id).shape);
+                                   const auto& def = driver_of(tool).world().tool(tool.id);
+                                   return cutting::traits_of(def.shape).kind;
                                }),
                                "'blade', 'carver', 'cut', 'probe', 'grasper' or 'suture'.")
         .def_property_readonly("is_scripted", held(+[](const Tool& tool) {

@@ -29,12 +29,6 @@ void require_sound(const std::string& what, const Pose& pose) {
                          ": its pose must have a finite position, m, and a rotation of length 1");
 }
 
-/// True for tools that cut in one step, where they lie in the frame of the world.
-bool is_at_once(const cutting::ToolShape& shape) {
-    return std::holds_alternative<cutting::PlaneCut>(shape) ||
-           std::holds_alternative<cutting::SurfaceCut>(shape);
-}
-
 }  // namespace
 
 sim::ToolId WorldDriver::add_tool(const std::string& name, const scenario::Value& definition,
@@ -52,9 +46,9 @@ sim::ToolId WorldDriver::add_tool(const std::string& name, const scenario::Value
             throw InputError("tool '" + name + "': " + error.what());
         }
     }();
-    if (pose && std::holds_alternative<cutting::Suture>(held.shape))
+    if (pose && !cutting::traits_of(held.shape).has_pose)
         throw InputError("tool '" + name + "': a suture has no pose: its points are in the tissue");
-    const bool is_cut = is_at_once(held.shape);
+    const bool is_cut = cutting::traits_of(held.shape).is_at_once;
     if (pose && is_cut)
         throw InputError("tool '" + name +
                          "': a cut has no pose: it lies in the frame of the world");
@@ -83,9 +77,9 @@ void WorldDriver::require_posable(sim::ToolId tool, const Pose& pose) const {
     require_led(tool);
     const sim::ToolDef& def = world_.tool(tool);
     require_sound("tool '" + def.name + "'", pose);
-    if (std::holds_alternative<cutting::Suture>(def.shape))
+    if (!cutting::traits_of(def.shape).has_pose)
         throw InputError("tool '" + def.name + "' is a suture, which has no pose: use tie()");
-    if (is_at_once(def.shape))
+    if (cutting::traits_of(def.shape).is_at_once)
         throw InputError("tool '" + def.name +
                          "' is a cut, which has no pose; add another tool for another cut");
 }
@@ -105,7 +99,7 @@ void WorldDriver::withdraw_tool(sim::ToolId tool) {
     require_led(tool);
     Led& led = led_[tool.index];
     const sim::ToolDef& def = world_.tool(tool);
-    if (std::holds_alternative<cutting::Suture>(def.shape))
+    if (!cutting::traits_of(def.shape).has_pose)
         throw InputError("tool '" + def.name + "' is a suture: use untie()");
     if (!world_.is_tool_present(tool) && !led.target)
         throw InputError("tool '" + def.name + "' is not there to be withdrawn");

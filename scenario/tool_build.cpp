@@ -294,7 +294,7 @@ std::string instead_of_dividing(const cutting::ToolShape& shape) {
 bool divides(const cutting::ToolShape& shape) {
     if (const auto* blade = std::get_if<cutting::Blade>(&shape))
         return blade->mode == CutMode::split;
-    return !std::holds_alternative<Carver>(shape) && cutting::cuts(shape);
+    return !std::holds_alternative<Carver>(shape) && cutting::traits_of(shape).cuts;
 }
 
 std::string for_longer_steps(const cutting::ToolShape& shape) {

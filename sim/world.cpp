@@ -11,8 +11,6 @@
 
 namespace incise::sim {
 
-using cutting::Blade;
-using cutting::CutMode;
 using topology::Mesh;
 
 World::World(WorldDef def) : parts_(std::make_unique<Parts>(std::move(def))) {}
@@ -42,9 +40,9 @@ const StepReport& World::Parts::checked_step(double end, double dt) {
         throw InputError("a step of " + format_number(dt) + " s is above the stable step of " +
                          format_number(at_rest) + " s");
     constexpr std::size_t most_parts = 1000;
-    for (const Tool& tool : tools)
-        if (solver == Solver::semi_implicit_euler && parts_for(tool) > double(most_parts))
-            throw InputError("tool '" + tool.def.name + "' moves so far in a step of " +
+    for (const auto& tool : tools)
+        if (solver == Solver::semi_implicit_euler && parts_for(*tool) > double(most_parts))
+            throw InputError("tool '" + tool->def().name + "' moves so far in a step of " +
                              format_number(dt) +
                              " s that the step needs more than 1000 parts; move it more slowly");
     if (num_parts(dt) > most_parts)
@@ -71,147 +69,38 @@ topology::BoundarySurface& World::Parts::built_surface() {
     return *surface;
 }
 
-void World::Parts::require_sound_pose(const Tool& tool, const Pose& pose) {
-    if (!pose.is_sound())
-        throw InputError("tool '" + tool.def.name +
-                         "': its pose must have a finite position, m, and a rotation of length 1");
-}
-
-void World::Parts::require_pose(const Tool& tool) {
-    if (std::holds_alternative<cutting::Suture>(tool.def.shape))
-        throw InputError("tool '" + tool.def.name +
-                         "' is a suture, which has no pose: use tie_suture()");
-}
-
 ToolId World::add_tool(ToolDef def) {
-    require_sound(def);
-    Parts& p = *parts_;
-    if (cutting::feels_force(def.shape) && !p.contact)
-        throw InputError("tool '" + def.name +
-                         "' exerts a force: it needs the explicit solver, with contact enabled");
-    if (const auto* blade = std::get_if<Blade>(&def.shape); blade && p.contact)
-        if (const std::string fault = contact::fault_of_toughness(
-                *blade, p.model.elements().materials(), p.contact->size());
-            !fault.empty())
-            throw InputError("tool '" + def.name + "': " + fault);
-    Parts::Tool tool{std::move(def)};
-    tool.surface = cutting::cut_surface_of(tool.def.shape);
-    Parts::measure(tool);
-    if (const auto* blade = std::get_if<Blade>(&tool.def.shape))
-        if (blade->mode == CutMode::split) tool.cut = p.cutter.begin_cut(blade->snap);
-    p.tools.push_back(std::move(tool));
-    return p.tool_ids.add();
+    parts_->tools.push_back(make_actor(def, parts_->tissue()));
+    return parts_->tool_ids.add();
 }
 
 void World::place_tool(ToolId id, const Pose& pose) {
-    Parts::Tool& tool = parts_->tool_of(id);
-    Parts::require_sound_pose(tool, pose);
-    Parts::require_pose(tool);
-    if (tool.cut && parts_->cutter.is_in_tissue(*tool.cut))
-        throw InputError("tool '" + tool.def.name +
-                         "' is in the tissue: withdraw it before it is put elsewhere");
-    if (parts_->contact) parts_->contact->remove_tool(id.index);
-    tool.is_present = true;
-    tool.is_leaving = tool.is_closed = false;
-    tool.pose = tool.target = pose;
+    parts_->tool_of(id).place(parts_->tissue(), pose);
 }
-
-void World::set_tool_pose(ToolId id, const Pose& pose) {
-    Parts::Tool& tool = parts_->tool_of(id);
-    Parts::require_sound_pose(tool, pose);
-    Parts::require_pose(tool);
-    if (!tool.is_present) tool.pose = pose;
-    tool.is_present = true;
-    tool.target = pose;
-}
-
+void World::set_tool_pose(ToolId id, const Pose& pose) { parts_->tool_of(id).set_target(pose); }
 void World::withdraw_tool(ToolId id, const Pose* pose_before) {
-    Parts::Tool& tool = parts_->tool_of(id);
-    if (!tool.is_present)
-        throw InputError("tool '" + tool.def.name + "' is not there to be withdrawn");
-    if (pose_before) Parts::require_sound_pose(tool, *pose_before);
-    tool.is_leaving = true;
-    tool.pose_before_end.reset();
-    if (pose_before) tool.pose_before_end = *pose_before;
+    parts_->tool_of(id).withdraw(pose_before);
 }
 
-const cutting::Grasper& World::Parts::grasper_of(ToolId id) {
-    const Tool& tool = tool_of(id);
-    const auto* grasper = std::get_if<cutting::Grasper>(&tool.def.shape);
-    if (!grasper) throw InputError("tool '" + tool.def.name + "' is no grasper");
-    if (!tool.is_present) throw InputError("grasper '" + tool.def.name + "' is not there");
-    return *grasper;
-}
+std::size_t World::close_grasper(ToolId id) { return parts_->tool_of(id).close(parts_->tissue()); }
+void World::open_grasper(ToolId id) { parts_->tool_of(id).open(); }
+bool World::is_grasper_closed(ToolId id) const { return parts_->tool_of(id).is_closed(); }
+std::size_t World::num_held(ToolId id) const { return parts_->tool_of(id).num_held(); }
 
-std::size_t World::close_grasper(ToolId id) {
-    Parts& p = *parts_;
-    const cutting::Grasper& grasper = p.grasper_of(id);
-    Parts::Tool& tool = p.tool_of(id);
-    p.contact->close(id.index, grasper, p.model, tool.pose);
-    tool.is_closed = true;
-    return p.contact->num_held(id.index);
-}
-
-void World::open_grasper(ToolId id) {
-    parts_->grasper_of(id);
-    parts_->contact->open(id.index);
-    parts_->tool_of(id).is_closed = false;
-}
-
-bool World::is_grasper_closed(ToolId id) const { return parts_->tool_of(id).is_closed; }
-std::size_t World::num_held(ToolId id) const {
-    return is_grasper_closed(id) && parts_->contact ? parts_->contact->num_held(id.index) : 0;
-}
-const cutting::Suture& World::Parts::suture_of(ToolId id) {
-    const Tool& tool = tool_of(id);
-    const auto* suture = std::get_if<cutting::Suture>(&tool.def.shape);
-    if (!suture) throw InputError("tool '" + tool.def.name + "' is no suture");
-    return *suture;
-}
-
-std::size_t World::tie_suture(ToolId id) {
-    Parts& p = *parts_;
-    p.contact->tie(id.index, p.suture_of(id), p.model);
-    Parts::Tool& tool = p.tool_of(id);
-    tool.is_present = true;
-    tool.is_leaving = false;
-    tool.length = tool.target_length = p.contact->thread_length(id.index);
-    return p.contact->num_held(id.index);
-}
-
+std::size_t World::tie_suture(ToolId id) { return parts_->tool_of(id).tie(parts_->tissue()); }
 void World::set_suture_length(ToolId id, double length) {
-    parts_->suture_of(id);
-    Parts::Tool& tool = parts_->tool_of(id);
-    if (!tool.is_present) throw InputError("suture '" + tool.def.name + "' is not tied");
-    if (!(length >= 0.0 && std::isfinite(length)))
-        throw InputError("suture '" + tool.def.name + "': a length of " + format_number(length) +
-                         " m: it must be 0 or more");
-    tool.target_length = length;
+    parts_->tool_of(id).set_length_target(length);
 }
+double World::suture_length(ToolId id) const { return parts_->tool_of(id).length(); }
+void World::untie_suture(ToolId id) { parts_->tool_of(id).untie(); }
+bool World::is_suture_tied(ToolId id) const { return parts_->tool_of(id).is_tied(); }
 
-double World::suture_length(ToolId id) const {
-    parts_->suture_of(id);
-    const Parts::Tool& tool = parts_->tool_of(id);
-    return tool.is_present ? tool.length : 0.0;
-}
-
-void World::untie_suture(ToolId id) {
-    parts_->suture_of(id);
-    parts_->contact->remove_tool(id.index);
-    parts_->tool_of(id).is_present = false;
-}
-
-bool World::is_suture_tied(ToolId id) const {
-    parts_->suture_of(id);
-    return parts_->tool_of(id).is_present && parts_->contact->num_held(id.index) >= 2;
-}
-
-bool World::is_tool_present(ToolId id) const { return parts_->tool_of(id).is_present; }
-Pose World::tool_pose(ToolId id) const { return parts_->tool_of(id).pose; }
-const ToolDef& World::tool(ToolId id) const { return parts_->tool_of(id).def; }
+bool World::is_tool_present(ToolId id) const { return parts_->tool_of(id).is_present(); }
+Pose World::tool_pose(ToolId id) const { return parts_->tool_of(id).pose(); }
+const ToolDef& World::tool(ToolId id) const { return parts_->tool_of(id).def(); }
 std::optional<ToolId> World::find_tool(std::string_view name) const {
-    const auto found = std::ranges::find(parts_->tools, name,
-                                         [](const Parts::Tool& tool) { return tool.def.name; });
+    const auto found = std::ranges::find_if(
+        parts_->tools, [&](const auto& tool) { return tool->def().name == name; });
     if (found == parts_->tools.end()) return std::nullopt;
     return tools()[static_cast<std::size_t>(found - parts_->tools.begin())];
 }

@@ -45,11 +45,9 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
 void World::Parts::restore_rest(ArchiveReader& ar) {
     integrator->restore(ar, model);
     ledger.restore(ar);
-    ar(cutter, tool_ids, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval,
+    ar(cutter, tool_ids, constraints, grasps, loads, num_steps, stable_step, bound_interval,
        has_moved, has_failed);
-    tool_ids.complete(tools.size());
-    for (std::size_t i = 0; i < tools.size(); ++i)
-        if (tool_ids.all()[i].index != i) throw InputError("its tools have ids of others");
+    if (!cutter.is_on(mesh)) throw InputError("what its tools remember is of another body");
     constraints.complete(model.num_constraints());
     loads.complete(model.loads().all().size());
     if (ar.read<bool>() != (contact != nullptr))
@@ -58,9 +56,13 @@ void World::Parts::restore_rest(ArchiveReader& ar) {
             "way round");
     if (contact) contact->restore(ar, model, built_surface());
     report_contact();
+    for (auto count = ar.read<std::uint64_t>(); count > 0; --count)
+        tools.push_back(load_actor(ar, tissue()));
+    tool_ids.complete(tools.size());
+    for (std::size_t i = 0; i < tools.size(); ++i)
+        if (tool_ids.all()[i].index != i) throw InputError("its tools have ids of others");
     if (!ar.is_at_end()) throw InputError("there are data beyond the end of the world");
     if (!(stable_step > 0.0)) throw InputError("its stable step is not above 0");
-    prepare_tools();
     require_sound_grasps();
 }
 
@@ -88,10 +90,12 @@ void World::Parts::save_motion(ArchiveWriter& ar) const {
 void World::Parts::save_rest(ArchiveWriter& ar) const {
     integrator->save(ar);
     ledger.save(ar);
-    ar(cutter, tool_ids, tools, constraints, grasps, loads, num_steps, stable_step, bound_interval,
+    ar(cutter, tool_ids, constraints, grasps, loads, num_steps, stable_step, bound_interval,
        has_moved, has_failed);
     ar(contact != nullptr);
     if (contact) contact->save(ar);
+    ar(static_cast<std::uint64_t>(tools.size()));
+    for (const auto& tool : tools) tool->save(ar);
 }
 
 void World::Parts::go_back(std::span<const physics::BodyEdit* const> edits, ArchiveReader& ar) {
@@ -118,31 +122,6 @@ void World::Parts::go_back(std::span<const physics::BodyEdit* const> edits, Arch
     restore_rest(ar);
     // There may be other force terms now.
     stable_step = std::min(stable_step, model.rest_stable_step());
-}
-
-/// Checks the tools that an archive contained, and computes the members that it does not contain.
-void World::Parts::prepare_tools() {
-    std::vector<const cutting::ToolShape*> shapes;
-    if (!cutter.is_on(mesh)) throw InputError("what its tools remember is of another body");
-    for (Tool& tool : tools) {
-        require_sound(tool.def);
-        require_sound_pose(tool, tool.pose);
-        require_sound_pose(tool, tool.target);
-        if (tool.pose_before_end) require_sound_pose(tool, *tool.pose_before_end);
-        if (!(tool.length >= 0.0 && tool.target_length >= 0.0 &&
-              std::isfinite(tool.length + tool.target_length)))
-            throw InputError("the length of a thread is not sound");
-        const auto* blade = std::get_if<Blade>(&tool.def.shape);
-        const bool splits = blade && blade->mode == CutMode::split;
-        if (tool.cut.has_value() != splits || (tool.cut && !cutter.has_cut(*tool.cut)))
-            throw InputError("the cut of a tool is not there");
-        tool.surface = cutting::cut_surface_of(tool.def.shape);
-        measure(tool);
-        shapes.push_back(&tool.def.shape);
-        if (cutting::feels_force(tool.def.shape) && !contact)
-            throw InputError("a tool needs contact, and it has none");
-    }
-    if (contact) contact->take_shapes(shapes);
 }
 
 namespace {

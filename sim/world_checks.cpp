@@ -9,13 +9,10 @@
 
 #include "incise/base/error.h"
 #include "incise/base/number_format.h"
-#include "incise/cutting/tools/solid.h"
 #include "incise/physics/elements/workers.h"
 
 namespace incise::sim {
 
-using cutting::Blade;
-using cutting::Carver;
 using topology::Mesh;
 
 namespace {
@@ -96,115 +93,6 @@ struct LoadRequirement {
 };
 
 }  // namespace
-
-namespace {
-
-/// Returns why a shape is invalid; empty if it is valid.
-struct FaultOfShape {
-    std::string operator()(const Blade& blade) const {
-        if (blade.edge.size() < 2)
-            return "the edge of a blade needs at least 2 points, and has " +
-                   std::to_string(blade.edge.size());
-        if (!std::ranges::all_of(blade.edge, is_finite)) return "a point of its edge is not finite";
-        if (std::ranges::adjacent_find(blade.edge) != blade.edge.end())
-            return "two points of its edge that follow each other are the same";
-        if (!(blade.toughness >= 0.0 && std::isfinite(blade.toughness)))
-            return "its toughness is " + format_number(blade.toughness) +
-                   " J/m2: it must be 0 or more";
-        if (blade.cutting_force != cutting::CuttingForce::report &&
-            blade.cutting_force != cutting::CuttingForce::apply)
-            return "there is no such cutting force";
-        if (blade.toughness > 0.0 && blade.mode == cutting::CutMode::separate)
-            return "its toughness needs the mode split: what it opens is not where its edge is";
-        if (blade.cutting_force == cutting::CuttingForce::apply && blade.toughness == 0.0)
-            return "its cutting force is applied: it needs a toughness above 0";
-        return fault_of_snap(blade.snap);
-    }
-    std::string operator()(const cutting::Suture& suture) const {
-        if (suture.points.size() < 2)
-            return "a suture needs at least 2 points, and has " +
-                   std::to_string(suture.points.size());
-        if (!std::ranges::all_of(suture.points, is_finite))
-            return "a point of its thread is not finite";
-        if (std::ranges::adjacent_find(suture.points) != suture.points.end())
-            return "two points of its thread that follow each other are the same";
-        if (!(suture.stiffness > 0.0 && std::isfinite(suture.stiffness)))
-            return "its stiffness is " + format_number(suture.stiffness) +
-                   " N/m: it must be above 0";
-        if (!(suture.max_force > 0.0))
-            return "its largest force is " + format_number(suture.max_force) +
-                   " N: it must be above 0";
-        if (!(suture.reach >= 0.0 && std::isfinite(suture.reach)))
-            return "its reach is " + format_number(suture.reach) + " m: it must be 0 or more";
-        return "";
-    }
-    std::string operator()(const Carver& carver) const {
-        return std::visit([&](const auto& shape) { return fault_of(shape); }, carver.shape);
-    }
-    std::string operator()(const cutting::PlaneCut& plane) const {
-        if (!is_finite(plane.point) || !is_finite(plane.normal)) return "its plane is not finite";
-        if (!(plane.normal.squaredNorm() > 0.0)) return "the normal of its plane is zero";
-        return fault_of_snap(plane.snap);
-    }
-    std::string operator()(const cutting::SurfaceCut& cut) const {
-        const auto& [points, triangles] = cut.surface;
-        if (triangles.empty()) return "its surface has no triangle";
-        if (!std::ranges::all_of(points, is_finite)) return "a point of its surface is not finite";
-        for (const auto& triangle : triangles)
-            for (const std::int64_t p : triangle)
-                if (p < 0 || p >= static_cast<std::int64_t>(points.size()))
-                    return "a triangle of its surface names point " + std::to_string(p) +
-                           ", and there are " + std::to_string(points.size());
-        return fault_of_snap(cut.snap);
-    }
-
-    std::string operator()(const cutting::Probe& probe) const {
-        if (!(probe.friction >= 0.0 && std::isfinite(probe.friction)))
-            return "its friction is " + format_number(probe.friction) + ": it must be 0 or more";
-        return std::visit([&](const auto& shape) { return fault_of(shape); }, probe.shape);
-    }
-    std::string operator()(const cutting::Grasper& grasper) const {
-        if (!(grasper.max_force > 0.0))
-            return "its largest force is " + format_number(grasper.max_force) +
-                   " N: it must be above 0";
-        return std::visit([&](const auto& shape) { return fault_of(shape); }, grasper.jaws);
-    }
-
-  private:
-    static std::string fault_of(const cutting::HalfSpace& half_space) {
-        if (!is_finite(half_space.point)) return "its point is not finite";
-        if (std::abs(half_space.normal.norm() - 1.0) < 1e-6) return "";
-        return "its normal has a length of " + format_number(half_space.normal.norm()) +
-               ": it must be 1";
-    }
-    static std::string fault_of(const cutting::Solid& solid) { return cutting::fault_of(solid); }
-    static std::string fault_of(const cutting::Sphere& sphere) {
-        return fault_of_length("it has a radius", sphere.radius);
-    }
-    static std::string fault_of(const cutting::Capsule& capsule) {
-        if (!is_finite(capsule.from) || !is_finite(capsule.to)) return "its axis is not finite";
-        return fault_of_length("it has a radius", capsule.radius);
-    }
-    static std::string fault_of(const cutting::Cuboid& cuboid) {
-        if (!is_finite(cuboid.size)) return "its size is not finite";
-        return fault_of_length("it has an edge", cuboid.size.minCoeff());
-    }
-    static std::string fault_of_length(const char* what, double length) {
-        if (length > 0.0 && std::isfinite(length)) return "";
-        return what + (" of " + format_number(length)) + " m: it must be above 0";
-    }
-    static std::string fault_of_snap(double snap) {
-        if (snap >= 0.0 && snap <= 0.5) return "";
-        return "it has a snap of " + format_number(snap) + ": it must be from 0 to 0.5";
-    }
-};
-
-}  // namespace
-
-void require_sound(const ToolDef& def) {
-    const std::string fault = std::visit(FaultOfShape{}, def.shape);
-    if (!fault.empty()) throw InputError("tool '" + def.name + "': " + fault);
-}
 
 void require_sound(const physics::Constraint& constraint, const Mesh& mesh) {
     const std::string what = "constraint '" + constraint.name + "'";

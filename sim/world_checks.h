@@ -8,8 +8,6 @@
 
 namespace incise::sim {
 
-/// Throws InputError if the shape of a tool is invalid.
-void require_sound(const ToolDef& def);
 /// Throws InputError if the constraint has no nodes, if a node does not exist, or if a curve is
 /// invalid.
 void require_sound(const physics::Constraint& constraint, const topology::Mesh& mesh);

@@ -16,6 +16,7 @@
 #include "incise/physics/solve/integrator.h"
 #include "incise/sim/edit_log.h"
 #include "incise/sim/handles.h"
+#include "incise/sim/tools/tool_actor.h"
 #include "incise/sim/world.h"
 
 namespace incise::sim {
@@ -67,37 +68,11 @@ inline constexpr double rounding_of_steps = 1e-8;
 
 // The parts of a world. Their order matters: later ones refer to earlier ones.
 struct World::Parts {
-    /// A tool and its state.
-    struct Tool {
-        ToolDef def;
-        std::optional<cutting::CutId> cut = {};                   // only for a blade that splits
-        std::shared_ptr<const cutting::CutSurface> surface = {};  // only for cuts at once
-        bool is_present = false;
-        bool has_just_left = false;                // a probe or a grasper, in this step
-        bool is_closed = false;                    // a grasper
-        double half_width = 0.0, reach = 0.0;      // of a probe, m: see probe_shape.h
-        double length = 0.0, target_length = 0.0;  // of a thread, as pose and target, m
-        Pose pose = {};                            // at present
-        Pose target = {};                          // at the end of the next step
-        bool is_leaving = false;
-        std::optional<Pose> pose_before_end = {};
-        std::vector<Vec3> edge_before = {}, edge_after = {}, motion = {};  // only for a blade
-
-        static void archive(auto& ar, auto& self) {
-            ar(self.def.name, self.def.shape, self.cut, self.is_present, self.pose, self.target,
-               self.is_leaving, self.pose_before_end, self.edge_after, self.motion, self.is_closed,
-               self.length, self.target_length);
-        }
-    };
-
     /// The present pose of the frame of a grasp, and its pose at the end of the next step.
     struct Grasp {
         Pose pose, target;
         static void archive(auto& ar, auto& self) { ar(self.pose, self.target); }
     };
-
-    /// Finds how thick and how large a probe is.
-    static void measure(Tool& tool);
 
     explicit Parts(WorldDef def);
     /// Restores what save() wrote of a world that was built with the materials and the solver of
@@ -109,7 +84,6 @@ struct World::Parts {
     void save_motion(ArchiveWriter& ar) const;
     /// True if somebody has a moment to go back to.
     bool is_undo_wanted() const { return log_end.use_count() > 1; }
-    void prepare_tools();
     void require_sound_grasps() const;
     /// Writes and reads what follows mesh and model in an archive.
     void save_rest(ArchiveWriter& ar) const;
@@ -128,23 +102,21 @@ struct World::Parts {
     /// Returns how many parts a step of `dt`, s, needs.
     std::size_t num_parts(double dt) const;
     /// Returns how many parts a step needs in which a tool moves to its target.
-    double parts_for(const Tool& tool) const;
-    /// Sets the motion of what feels a force in a part of a step, from one share of it to another.
+    double parts_for(const ToolActor& tool) const;
+    /// Tells the contact which tools touch in a part of a step, from one share of it to another.
     /// @param moved  how far the tissue may have moved in the step so far, m
-    void move_touching_tools(double from, double to, double moved);
+    void touch_with_tools(double from, double to, double moved);
     std::unique_ptr<contact::Contact> make_contact(const contact::ContactSettings& settings,
                                                    Solver with);
     void report_contact();
     void report_tool(ToolId id);
     void cut_with(ToolId id, double end);
-    cutting::Split split_with(Tool& tool);
-    void follow(ToolId id, cutting::Split done, double end);
-    Tool& tool_of(ToolId id) { return tools[tool_ids.position_of(id)]; }
-    const cutting::Grasper& grasper_of(ToolId id);
-    const cutting::Suture& suture_of(ToolId id);
+    void follow(ToolId id, const cutting::Split& done, double end);
+    /// Lets contact and tools follow the edits of a step.
+    void follow_with_contact();
+    ToolActor& tool_of(ToolId id) { return *tools[tool_ids.position_of(id)]; }
+    Tissue tissue() { return {mesh, model, cutter, contact.get()}; }
     topology::BoundarySurface& built_surface();
-    static void require_sound_pose(const Tool& tool, const Pose& pose);
-    static void require_pose(const Tool& tool);
 
     std::uint32_t number;  // see next_number()
     topology::Mesh mesh;
@@ -157,7 +129,8 @@ struct World::Parts {
     Ledger ledger;
     cutting::Cutter cutter;
     HandleTable<ToolId> tool_ids{"tool", number};
-    std::vector<Tool> tools;  // by index of their ids, too, as none is removed
+    // By index of their ids, too, as none is removed.
+    std::vector<std::unique_ptr<ToolActor>> tools;
     HandleTable<ConstraintId> constraints{"constraint", number};
     std::vector<std::optional<Grasp>> grasps;  // by constraint, of those that are one
     HandleTable<LoadId> loads{"load", number};

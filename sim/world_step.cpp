@@ -3,19 +3,17 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <sstream>
 #include <utility>
 
 #include "incise/cutting/exact/undividable.h"
-#include "incise/cutting/tools/probe_shape.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
 #include "incise/topology/mesh_metrics.h"
 
 namespace incise::sim {
 
-using cutting::Blade;
-using cutting::Carver;
 using topology::ChangeSet;
 using topology::Mesh;
 
@@ -110,24 +108,30 @@ void World::Parts::step_to(double end) {
         cut();
     }
     model.compute_forces(end);
-    if (contact && !report.edits.empty()) contact->follow(model, built_surface());
+    if (contact && !report.edits.empty()) follow_with_contact();
     update_stable_step();
     for (const ToolId id : tool_ids.all()) report_tool(id);
     report_contact();
 }
 
+void World::Parts::follow_with_contact() {
+    contact->follow(model, built_surface());
+    for (const auto& tool : tools)
+        if (auto* touching = tool->contact()) touching->follow(model);
+}
+
 void World::Parts::report_tool(ToolId id) {
-    Tool& tool = tools[id.index];
-    if (!tool.is_present && !tool.has_just_left) return;
-    ToolState state{id, tool.pose, tool.cut && cutter.is_in_tissue(*tool.cut)};
+    ToolActor& tool = *tools[id.index];
+    if (!tool.is_present() && !tool.has_just_left()) return;
+    ToolState state{id, tool.pose(), tool.is_in_tissue(cutter)};
     if (contact) {
-        const contact::ToolImpulse done = contact->take_impulse(id.index);
+        auto* touching = tool.contact();
+        const auto done = touching ? touching->take_sum() : contact::ToolImpulse();
         state.force = -done.force / (report.to - report.from);
         state.torque = -done.torque / (report.to - report.from);
     }
     report.tools.push_back(state);
-    if (tool.has_just_left) contact->remove_tool(id.index);
-    tool.has_just_left = false;
+    if (tool.has_just_left()) tool.forget_leaving();
 }
 
 void World::Parts::report_contact() {
@@ -177,41 +181,19 @@ void World::Parts::update_stable_step() {
 std::size_t World::Parts::num_parts(double dt) const {
     if (solver != Solver::semi_implicit_euler) return 1;
     double parts = std::max(std::ceil(dt / stable_step - rounding_of_steps), 1.0);
-    for (const Tool& tool : tools) parts = std::max(parts, parts_for(tool));
+    for (const auto& tool : tools) parts = std::max(parts, parts_for(*tool));
     return static_cast<std::size_t>(std::min(parts, 1e9));
 }
 
-void World::Parts::measure(Tool& tool) {
-    const auto* probe = std::get_if<cutting::Probe>(&tool.def.shape);
-    if (!probe) return;
-    tool.half_width = cutting::half_width_of(probe->shape);
-    tool.reach = cutting::reach_of(probe->shape);
+double World::Parts::parts_for(const ToolActor& tool) const {
+    return contact ? tool.num_parts(contact->size()) : 1.0;
 }
 
-double World::Parts::parts_for(const Tool& tool) const {
-    const auto* probe = std::get_if<cutting::Probe>(&tool.def.shape);
-    if (!probe || !tool.is_present) return 1.0;
-    constexpr double most = 0.25;  // of an element, or of the probe
-    const double move = (tool.target.position - tool.pose.position).norm() +
-                        tool.reach * tool.pose.rotation.angularDistance(tool.target.rotation);
-    return std::ceil(move / (most * std::min(tool.half_width, contact->size())));
-}
-
-void World::Parts::move_touching_tools(double from, double to, double moved) {
-    const auto tissue_at = [&](const Vec3& x) {
-        return cutter.tissue_at(mesh, model.mesh_positions(), x, moved);
-    };
-    for (std::size_t i = 0; i < tools.size(); ++i) {
-        const Tool& tool = tools[i];
-        if (!cutting::feels_force(tool.def.shape) || !tool.is_present) continue;
-        const Pose before = interpolate(tool.pose, tool.target, from);
-        const Pose after = interpolate(tool.pose, tool.target, to);
-        if (const auto* blade = std::get_if<Blade>(&tool.def.shape))
-            contact->move_blade(i, *blade, model, before, after, tissue_at);
-        else if (std::holds_alternative<cutting::Suture>(tool.def.shape))
-            contact->draw(i, std::lerp(tool.length, tool.target_length, to));
-        else
-            contact->move_tool(i, tool.def.shape, before, after);
+void World::Parts::touch_with_tools(double from, double to, double moved) {
+    contact->begin_tools();
+    for (const auto& tool : tools) {
+        if (!tool->is_present() || !cutting::feels_force(tool->def().shape)) continue;
+        if (auto* touching = tool->touch(tissue(), from, to, moved)) contact->add_tool(*touching);
     }
 }
 
@@ -225,8 +207,8 @@ void World::Parts::move_to(double end) {
             i + 1 == n ? end : from + dt * static_cast<double>(i + 1) / static_cast<double>(n);
         if (i > 0) model.compute_forces(time);
         if (contact)
-            move_touching_tools(static_cast<double>(i) / static_cast<double>(n),
-                                static_cast<double>(i + 1) / static_cast<double>(n), moved);
+            touch_with_tools(static_cast<double>(i) / static_cast<double>(n),
+                             static_cast<double>(i + 1) / static_cast<double>(n), moved);
         integrator->step(model, time, next - time);
         if (contact) contact->book_work(model);
         for (std::size_t k = 0; k < reactions.size() && n > 1; ++k)
@@ -240,64 +222,25 @@ void World::Parts::move_to(double end) {
 
 /// Cuts what a tool meets on the path from its pose to its target, and moves the tool there.
 void World::Parts::cut_with(ToolId id, double end) {
-    Tool& tool = tools[id.index];
-    if (!tool.is_present) return;
-    if (!cutting::cuts(tool.def.shape)) {
-        tool.pose = tool.target;
-        tool.length = tool.target_length;
-        if (!tool.is_leaving) return;
-        tool.has_just_left = true;
-        tool.is_present = tool.is_leaving = tool.is_closed = false;
-        return;
-    }
-    const auto carry_out = [&](auto edit) -> cutting::Split {
-        try {
-            return edit();
-        } catch (const InputError& error) {
-            std::ostringstream text;
-            text << "tool '" << tool.def.name << "', at t = " << end << " s: " << error.what();
-            const auto* undividable = dynamic_cast<const cutting::UndividableElement*>(&error);
-            throw ToolError(text.str(), id, undividable ? undividable->element : CellId());
-        }
+    ToolActor& tool = *tools[id.index];
+    const auto carry_out = [&](const std::function<cutting::Split()>& edit) {
+        const cutting::Split done = [&] {
+            try {
+                return edit();
+            } catch (const InputError& error) {
+                std::ostringstream text;
+                text << "tool '" << tool.def().name << "', at t = " << end
+                     << " s: " << error.what();
+                const auto* undividable = dynamic_cast<const cutting::UndividableElement*>(&error);
+                throw ToolError(text.str(), id, undividable ? undividable->element : CellId());
+            }
+        }();
+        follow(id, done, end);
     };
-    follow(id, carry_out([&] { return split_with(tool); }), end);
-    tool.pose = tool.target;
-    if (!tool.is_leaving) return;
-    if (tool.cut && cutter.is_in_tissue(*tool.cut)) {
-        if (tool.pose_before_end) {
-            cutting::place_edge(std::get<Blade>(tool.def.shape), *tool.pose_before_end,
-                                tool.edge_before);
-            for (std::size_t i = 0; i < tool.motion.size(); ++i)
-                tool.motion[i] = tool.edge_after[i] - tool.edge_before[i];
-        }
-        const cutting::BladeEnd blade(tool.edge_after, tool.motion);
-        follow(id,
-               carry_out([&] { return cutter.end_cut(*tool.cut, mesh, model.fragments(), blade); }),
-               end);
-    }
-    tool.has_just_left = cutting::feels_force(tool.def.shape);
-    tool.is_present = tool.is_leaving = false;
+    tool.act(tissue(), std::ref(carry_out));  // a copy would take memory in each step
 }
 
-cutting::Split World::Parts::split_with(Tool& tool) {
-    if (const auto* carver = std::get_if<Carver>(&tool.def.shape))
-        return cutter.carve(mesh, carver->shape, tool.pose, tool.target);
-    if (const auto* plane = std::get_if<cutting::PlaneCut>(&tool.def.shape))
-        return cutter.split(mesh, *tool.surface, plane->snap);
-    if (const auto* cut = std::get_if<cutting::SurfaceCut>(&tool.def.shape))
-        return cutter.split(mesh, *tool.surface, cut->snap);
-    const Blade& blade = std::get<Blade>(tool.def.shape);
-    cutting::place_edge(blade, tool.pose, tool.edge_before);
-    cutting::place_edge(blade, tool.target, tool.edge_after);
-    tool.motion.resize(blade.edge.size(), Vec3::Zero());
-    if (tool.edge_before != tool.edge_after)
-        for (std::size_t i = 0; i < tool.motion.size(); ++i)
-            tool.motion[i] = tool.edge_after[i] - tool.edge_before[i];
-    if (tool.cut) return cutter.split(*tool.cut, mesh, tool.edge_before, tool.edge_after);
-    return cutter.separate(mesh, tool.edge_before, tool.edge_after);
-}
-
-void World::Parts::follow(ToolId id, cutting::Split done, double end) {
+void World::Parts::follow(ToolId id, const cutting::Split& done, double end) {
     const ChangeSet& changes = done.changes;
     if (changes.is_empty()) return;
     // These totals are those before the edit: the model has not followed it yet.
@@ -309,8 +252,8 @@ void World::Parts::follow(ToolId id, cutting::Split done, double end) {
     if (is_undo_wanted()) log_end = log_end->append(edit);
     cutter.apply(mesh, changes);
     if (surface) surface->apply(mesh, changes);
-    EditRecord record = ledger.record(end, num_steps, tools[id.index].def.name, done, edit.physics,
-                                      before, mass_removed);
+    EditRecord record = ledger.record(end, num_steps, tools[id.index]->def().name, done,
+                                      edit.physics, before, mass_removed);
     report.edits.push_back({id, std::move(record), std::move(edit)});
 }
 

@@ -25,8 +25,18 @@ enum class CutMode { split, separate };
 /// the force is reached.
 enum class CuttingForce { report, apply };
 
+/// What the kind of a tool tells about it.
+struct ToolTraits {
+    const char* kind;         ///< its name in scenarios
+    bool cuts = false;        ///< it edits the mesh
+    bool touches = false;     ///< tissue exerts a force on it, whatever its values are
+    bool has_pose = true;     ///< without one it is where the tissue is
+    bool is_at_once = false;  ///< it lies in the frame of the world, and cuts in one step
+};
+
 /// A tool that cuts along what its edge sweeps. The edge is in the frame of the tool.
 struct Blade {
+    static constexpr ToolTraits traits{.kind = "blade", .cuts = true};
     std::vector<Vec3> edge;         ///< a polyline of at least two points, m
     CutMode mode = CutMode::split;  ///< split is for tetrahedra only
     double snap = default_snap;     ///< for mode split: see SplitOptions
@@ -40,12 +50,14 @@ struct Blade {
 
 /// A tool that removes the elements whose centre its shape covers.
 struct Carver {
+    static constexpr ToolTraits traits{.kind = "carver", .cuts = true};
     CarverShape shape;
     static void archive(auto& ar, auto& self) { ar(self.shape); }
 };
 
 /// A tool that divides elements along a plane, at once. The plane is in the frame of the world.
 struct PlaneCut {
+    static constexpr ToolTraits traits{.kind = "cut", .cuts = true, .is_at_once = true};
     Vec3 point = Vec3::Zero();    ///< m
     Vec3 normal = Vec3::UnitZ();  ///< of any length above 0
     double snap = default_snap;   ///< see SplitOptions
@@ -55,6 +67,7 @@ struct PlaneCut {
 /// A tool that divides elements along a triangulated surface, at once. The surface is in the frame
 /// of the world, m.
 struct SurfaceCut {
+    static constexpr ToolTraits traits{.kind = "cut", .cuts = true, .is_at_once = true};
     topology::SurfaceData surface;
     double snap = default_snap;  ///< see SplitOptions
     static void archive(auto& ar, auto& self) { ar(self.surface, self.snap); }
@@ -64,6 +77,7 @@ using ProbeShape = std::variant<Sphere, Capsule, Cuboid, HalfSpace, Solid>;
 
 /// A rigid tool that pushes tissue and cuts nothing.
 struct Probe {
+    static constexpr ToolTraits traits{.kind = "probe", .touches = true};
     ProbeShape shape;
     double friction = 0.0;  ///< Coulomb's coefficient between it and the tissue
     static void archive(auto& ar, auto& self) { ar(self.shape, self.friction); }
@@ -71,6 +85,7 @@ struct Probe {
 
 /// A tool whose jaws hold the surface of the tissue that is in them when they close.
 struct Grasper {
+    static constexpr ToolTraits traits{.kind = "grasper", .touches = true};
     CarverShape jaws;  ///< what they enclose
     /// The largest force that they hold, N; above it tissue slips out of them.
     double max_force = std::numeric_limits<double>::infinity();
@@ -80,6 +95,7 @@ struct Grasper {
 /// A thread through points of the tissue, which it draws together. It slides through all of them,
 /// so that its tension is everywhere the same, and it bears no pressure.
 struct Suture {
+    static constexpr ToolTraits traits{.kind = "suture", .touches = true, .has_pose = false};
     std::vector<Vec3> points;  ///< in order, at least two, where the tissue is at rest, m
     double stiffness = 0.0;    ///< of the whole thread, N/m
     /// Above it the thread tears, N.
@@ -94,17 +110,22 @@ struct Suture {
 
 using ToolShape = std::variant<Blade, Carver, PlaneCut, SurfaceCut, Probe, Grasper, Suture>;
 
-/// True for tools that edit the mesh.
-inline bool cuts(const ToolShape& shape) {
-    return !std::holds_alternative<Probe>(shape) && !std::holds_alternative<Grasper>(shape) &&
-           !std::holds_alternative<Suture>(shape);
+/// Returns what the kind of a tool tells about it.
+inline const ToolTraits& traits_of(const ToolShape& shape) {
+    return std::visit([](const auto& tool) -> const ToolTraits& { return tool.traits; }, shape);
 }
 
-/// True for tools that tissue exerts a known force on: those that do not cut, and blades with a
+/// True for tools that tissue exerts a known force on: those that touch it, and those with a
 /// toughness.
 inline bool feels_force(const ToolShape& shape) {
-    const auto* blade = std::get_if<Blade>(&shape);
-    return !cuts(shape) || (blade && blade->toughness > 0.0);
+    return std::visit(
+        [](const auto& tool) {
+            if constexpr (requires { tool.toughness; })
+                return tool.traits.touches || tool.toughness > 0.0;
+            else
+                return tool.traits.touches;
+        },
+        shape);
 }
 
 /// Returns the surface of a PlaneCut or a SurfaceCut, and null for other tools.

@@ -1,0 +1,74 @@
+// The grasper: jaws that hold the surface that is in them when they close.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/base/error.h"
+#include "incise/contact/grasp_contact.h"
+#include "incise/sim/tools/kinds.h"
+#include "incise/sim/tools/shape_faults.h"
+
+namespace incise::sim {
+
+namespace {
+
+class GrasperActor final : public ActorOf<cutting::Grasper> {
+  public:
+    explicit GrasperActor(const ToolDef& def) : ActorOf(def) {
+        const std::string fault = fault_of_max_force(shape().max_force);
+        require_none(fault.empty() ? fault_of_shape(shape().jaws) : fault);
+    }
+
+    std::size_t close(const Tissue& tissue) override {
+        require_there();
+        contact_of(tissue).close(tissue.model, tissue.contact->surface().triangles, pose());
+        is_closed_ = true;
+        return num_held();
+    }
+    void open() override {
+        require_there();
+        if (contact_) contact_->open();
+        is_closed_ = false;
+    }
+    bool is_closed() const override { return is_closed_; }
+    std::size_t num_held() const override {
+        return is_closed_ && contact_ ? contact_->num_held() : 0;
+    }
+
+    contact::ToolContact* touch(const Tissue& tissue, double from, double to, double) override {
+        contact_of(tissue).move(interpolate(pose(), target(), from),
+                                interpolate(pose(), target(), to));
+        return &*contact_;
+    }
+    contact::ToolContact* contact() override { return contact_ ? &*contact_ : nullptr; }
+    void end_contact() override {
+        contact_.reset();
+        is_closed_ = false;
+    }
+
+  private:
+    void require_there() const {
+        if (!is_present()) throw InputError("grasper '" + def().name + "' is not there");
+    }
+    contact::GraspContact& contact_of(const Tissue& tissue) {
+        if (!contact_) contact_.emplace(shape(), tissue.contact->size());
+        return *contact_;
+    }
+    void leave(const Tissue&, const CarryOut&) override { is_closed_ = false; }
+    void save_own(ArchiveWriter& ar) const override {
+        ar(is_closed_, contact_.has_value());
+        if (contact_) contact_->save(ar);
+    }
+    void restore_own(ArchiveReader& ar, const Tissue& tissue) override {
+        ar(is_closed_);
+        if (ar.read<bool>()) contact_of(tissue).restore(ar, tissue.model);
+    }
+
+    bool is_closed_ = false;
+    std::optional<contact::GraspContact> contact_;
+};
+
+}  // namespace
+
+std::unique_ptr<ToolActor> make_actor_of(const cutting::Grasper&, const ToolDef& def) {
+    return std::make_unique<GrasperActor>(def);
+}
+
+}  // namespace incise::sim

@@ -1,0 +1,67 @@
+// The probe: a rigid tool that pushes tissue. Obstacles are probes that stand still.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "incise/base/number_format.h"
+#include "incise/contact/rigid_contact.h"
+#include "incise/cutting/tools/probe_shape.h"
+#include "incise/sim/tools/kinds.h"
+#include "incise/sim/tools/shape_faults.h"
+
+namespace incise::sim {
+
+namespace {
+
+std::string fault_of(const cutting::Probe& probe) {
+    if (!(probe.friction >= 0.0 && std::isfinite(probe.friction)))
+        return "its friction is " + format_number(probe.friction) + ": it must be 0 or more";
+    return fault_of_shape(probe.shape);
+}
+
+class ProbeActor final : public ActorOf<cutting::Probe> {
+  public:
+    explicit ProbeActor(const ToolDef& def) : ActorOf(def) {
+        require_none(fault_of(shape()));
+        half_width_ = cutting::half_width_of(shape().shape);
+        reach_ = cutting::reach_of(shape().shape);
+    }
+
+    // So that the probe does not pass through a surface.
+    double num_parts(double element_size) const override {
+        if (!is_present()) return 1.0;
+        constexpr double most = 0.25;  // of an element, or of the probe
+        const double move = (target().position - pose().position).norm() +
+                            reach_ * pose().rotation.angularDistance(target().rotation);
+        return std::ceil(move / (most * std::min(half_width_, element_size)));
+    }
+    contact::ToolContact* touch(const Tissue& tissue, double from, double to, double) override {
+        if (!contact_) contact_.emplace(shape(), tissue.contact->size());
+        contact_->move(interpolate(pose(), target(), from), interpolate(pose(), target(), to));
+        return &*contact_;
+    }
+    contact::ToolContact* contact() override { return contact_ ? &*contact_ : nullptr; }
+    void end_contact() override { contact_.reset(); }
+
+  private:
+    void save_own(ArchiveWriter& ar) const override {
+        ar(contact_.has_value());
+        if (contact_) contact_->save(ar);
+    }
+    void restore_own(ArchiveReader& ar, const Tissue& tissue) override {
+        if (!ar.read<bool>()) return;
+        contact_.emplace(shape(), tissue.contact->size());
+        contact_->restore(ar, tissue.contact->surface());
+    }
+
+    double half_width_ = 0.0, reach_ = 0.0;  // m: see probe_shape.h
+    std::optional<contact::RigidContact> contact_;
+};
+
+}  // namespace
+
+std::unique_ptr<ToolActor> make_actor_of(const cutting::Probe&, const ToolDef& def) {
+    return std::make_unique<ProbeActor>(def);
+}
+
+}  // namespace incise::sim

@@ -1,0 +1,87 @@
+// The suture: a thread through points of the tissue, which it draws together.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <cmath>
+
+#include "incise/base/error.h"
+#include "incise/base/number_format.h"
+#include "incise/contact/suture_contact.h"
+#include "incise/sim/tools/kinds.h"
+#include "incise/sim/tools/shape_faults.h"
+
+namespace incise::sim {
+
+namespace {
+
+std::string fault_of(const cutting::Suture& suture) {
+    if (const std::string fault = fault_of_line(suture.points, "thread", "a suture");
+        !fault.empty())
+        return fault;
+    if (!(suture.stiffness > 0.0 && std::isfinite(suture.stiffness)))
+        return "its stiffness is " + format_number(suture.stiffness) + " N/m: it must be above 0";
+    if (const std::string fault = fault_of_max_force(suture.max_force); !fault.empty())
+        return fault;
+    if (!(suture.reach >= 0.0 && std::isfinite(suture.reach)))
+        return "its reach is " + format_number(suture.reach) + " m: it must be 0 or more";
+    return "";
+}
+
+/// Without contact it is never made.
+class SutureActor final : public ActorOf<cutting::Suture> {
+  public:
+    explicit SutureActor(const ToolDef& def) : ActorOf(def) { require_none(fault_of(shape())); }
+
+    std::size_t tie(const Tissue& tissue) override {
+        contact_.emplace(shape(), tissue.contact->size());
+        contact_->tie(tissue.model);
+        set_present(true);
+        length_ = target_length_ = contact_->length();
+        return num_held();
+    }
+    void set_length_target(double length) override {
+        if (!is_present()) throw InputError("suture '" + def().name + "' is not tied");
+        if (!(length >= 0.0 && std::isfinite(length)))
+            throw InputError("suture '" + def().name + "': a length of " + format_number(length) +
+                             " m: it must be 0 or more");
+        target_length_ = length;
+    }
+    double length() const override { return is_present() ? length_ : 0.0; }
+    void untie() override {
+        end_contact();
+        set_present(false);
+    }
+    bool is_tied() const override { return is_present() && num_held() >= 2; }
+    std::size_t num_held() const override { return contact_ ? contact_->num_held() : 0; }
+
+    contact::ToolContact* touch(const Tissue&, double, double to, double) override {
+        if (contact_) contact_->draw(std::lerp(length_, target_length_, to));
+        return contact();
+    }
+    contact::ToolContact* contact() override { return contact_ ? &*contact_ : nullptr; }
+    void end_contact() override { contact_.reset(); }
+
+  private:
+    void arrive() override { length_ = target_length_; }
+    void save_own(ArchiveWriter& ar) const override {
+        ar(length_, target_length_, contact_.has_value());
+        if (contact_) contact_->save(ar);
+    }
+    void restore_own(ArchiveReader& ar, const Tissue& tissue) override {
+        ar(length_, target_length_);
+        if (!(length_ >= 0.0 && target_length_ >= 0.0 && std::isfinite(length_ + target_length_)))
+            require_none("its thread has no length");
+        if (!ar.read<bool>()) return;
+        contact_.emplace(shape(), tissue.contact->size());
+        contact_->restore(ar, tissue.model);
+    }
+
+    double length_ = 0.0, target_length_ = 0.0;  // now and at the end of the next step, m
+    std::optional<contact::SutureContact> contact_;
+};
+
+}  // namespace
+
+std::unique_ptr<ToolActor> make_actor_of(const cutting::Suture&, const ToolDef& def) {
+    return std::make_unique<SutureActor>(def);
+}
+
+}  // namespace incise::sim
