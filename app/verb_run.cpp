@@ -155,9 +155,7 @@ void require_inputs_elsewhere(const scenario::Scenario& scenario,
     if (const auto* mesh = std::get_if<std::filesystem::path>(&scenario.mesh.source))
         inputs.push_back(*mesh);
     for (const scenario::ToolSpec& tool : scenario.tools)
-        if (const auto* cut = std::get_if<scenario::CutSpec>(&tool.kind))
-            if (const auto* surface = std::get_if<std::filesystem::path>(&cut->along))
-                inputs.push_back(*surface);
+        if (tool.surface) inputs.push_back(tool.surface->path);
     // A path that cannot be examined gives an error when it is opened.
     std::error_code error;
     const auto frames = weakly_canonical(folder / "frames", error);
@@ -218,7 +216,8 @@ std::vector<std::string> warnings_of_idle_tools(const runner::Simulation& simula
         const auto& edits = simulation.edits();
         const bool has_cut = std::any_of(edits.begin(), edits.end(),
                                          [&](const auto& edit) { return edit.tool == tool.name; });
-        if (!has_cut && scenario::cuts(tool) && tool.path.front().time < simulation.time())
+        if (!has_cut && cutting::traits_of(tool.shape).cuts &&
+            tool.path.front().time < simulation.time())
             warnings.push_back("tool '" + tool.name +
                                "' has cut nothing; look at a picture of where the tissue is when "
                                "it passes");

@@ -40,11 +40,7 @@ std::uint64_t fingerprint_of(const physics::Model& model,
         for (const Vec3& x : corners) ar(x);
     for (const Vec3& fibre : model.fibres()) ar(fibre);
     for (const scenario::ToolSpec& tool : tools) {
-        const auto* probe = std::get_if<scenario::ProbeSpec>(&tool.kind);
-        if (probe && !probe->surface.empty()) ar(io::load_input_file(probe->surface).bytes);
-        if (const auto* cut = std::get_if<scenario::CutSpec>(&tool.kind))
-            if (const auto* file = std::get_if<std::filesystem::path>(&cut->along))
-                ar(io::load_input_file(*file).bytes);
+        if (tool.surface) ar(io::load_input_file(tool.surface->path).bytes);
     }
     return incise::checksum(ar.bytes());
 }

@@ -19,6 +19,7 @@
 #include "incise/scenario/remedies.h"
 #include "incise/scenario/single_precision.h"
 #include "incise/scenario/step_limit.h"
+#include "incise/scenario/tools/tool_kind.h"
 #include "incise/sim/selection.h"
 #include "incise/topology/mesh_metrics.h"
 
@@ -319,18 +320,14 @@ std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::
                 spec = with_mode(spec, *mesh);
                 suits_mesh = true;
             });
-        const auto* cut = std::get_if<CutSpec>(&spec.kind);
-        const auto* probe = std::get_if<ProbeSpec>(&spec.kind);
-        const bool has_surface = probe && !probe->surface.empty();
-        const std::string& place = cut           ? cut->location
-                                   : has_surface ? probe->location
-                                                 : spec.location;
+        const std::string& place = spec.surface ? spec.surface->location : spec.location;
         problems.try_to(place, [&] {
             tools.push_back(build_tool(spec, warnings));
             if (suits_mesh) {
-                require_tissue(tools.back(), *mesh);
-                if (const auto inside = warning_of_tissue_inside(tools.back(), *mesh))
-                    warnings.push_back(located(spec.location, *inside));
+                const ToolKind& kind = kind_of(spec.shape);
+                kind.require_fit(tools.back(), *mesh);
+                if (const auto warning = kind.warning_of_begin(tools.back(), *mesh))
+                    warnings.push_back(located(spec.location, *warning));
                 require_divisible(tools.back(), *mesh, end_time);
                 if (const auto near = warning_of_near_misses(tools.back(), *mesh, end_time))
                     warnings.push_back(located(spec.location, *near));

@@ -68,7 +68,9 @@ void look_at_materials(const Scenario& scenario, const physics::MaterialTable& m
 bool is_borne(const Scenario& scenario) {
     if (scenario.dynamics.mode == Mode::statics) return !scenario.constraints.empty();
     return !scenario.constraints.empty() || !scenario.loads.empty() ||
-           std::ranges::any_of(scenario.tools, [](const ToolSpec& tool) { return !cuts(tool); });
+           std::ranges::any_of(scenario.tools, [](const ToolSpec& tool) {
+               return !cutting::traits_of(tool.shape).cuts;
+           });
 }
 
 void look_at_support(const Scenario& scenario, Findings& findings) {
@@ -104,7 +106,7 @@ void look_at_weight(const Scenario& scenario, const Box& body,
 
 /// Returns the area that the edge of a blade sweeps over the one that it would sweep if it moved
 /// across itself; nothing if it does not move.
-std::optional<double> sharpness_of_motion(const BladeSpec& blade, const ToolPath& path) {
+std::optional<double> sharpness_of_motion(const cutting::Blade& blade, const ToolPath& path) {
     constexpr int parts = 8;  // of the way from key to key: a blade may turn on it
     double swept = 0.0, most = 0.0;
     const auto& keys = path.keys();
@@ -127,7 +129,7 @@ std::optional<double> sharpness_of_motion(const BladeSpec& blade, const ToolPath
 void look_at_blades(const Scenario& scenario, Findings& findings) {
     constexpr double along_itself = 0.01;
     for (const ToolSpec& tool : scenario.tools) {
-        const auto* blade = std::get_if<BladeSpec>(&tool.kind);
+        const auto* blade = std::get_if<cutting::Blade>(&tool.shape);
         if (!blade || tool.path.size() < 2) continue;
         const auto sharpness = sharpness_of_motion(*blade, ToolPath(tool.path));
         if (!sharpness)

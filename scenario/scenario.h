@@ -141,77 +141,31 @@ struct LoadSpec {
     std::string location = {};            ///< for messages: FILE:line:column
 };
 
-using cutting::Carver;
 using cutting::CutMode;
 
-/// A blade, which cuts what its edge sweeps through.
-struct BladeSpec {
-    std::vector<Vec3> edge;       ///< polyline in the frame of the tool, m, at least two points
-    std::optional<CutMode> mode;  ///< if not set, usual_mode() of the mesh (tool_build.h)
-    std::optional<double> snap;   ///< for CutMode::split; see cutting::SplitOptions
-    double toughness = 0.0;       ///< J/m2; 0 if not known
-    cutting::CuttingForce cutting_force = cutting::CuttingForce::report;
-};
-
-/// The points x with (x - point) . normal = 0.
-struct PlaneSpec {
-    Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
-};
-
-/// A cut at one time along a plane or along the triangulated surface of a file.
-struct CutSpec {
-    std::variant<PlaneSpec, std::filesystem::path> along;
-    double scale = 1.0;          ///< factor of all coordinates of the surface
-    std::optional<double> snap;  ///< see cutting::SplitOptions
-    std::string location = {};   ///< for messages: FILE:line:column of the key `surface`
-};
-
-/// A probe or an obstacle.
-struct ProbeSpec {
-    /// With a surface, its shape is read from there when the tool is built.
-    cutting::Probe probe;
-    std::filesystem::path surface;  ///< empty for other shapes
-    double scale = 1.0;             ///< factor of all coordinates of the surface
-    std::string location = {};      ///< for messages: FILE:line:column of the surface
-};
-
-/// A grasper, with the times at which its jaws close and open, s.
-struct GrasperSpec {
-    cutting::Grasper grasper;
-    double close = 0.0;
-    std::optional<double> open;  ///< if not set, the jaws open at the end of the path
-};
-
-/// A suture, tied at the one time of its path.
-struct SutureSpec {
-    cutting::Suture suture;
-    double over = 0.0;             ///< how long it is drawn, s
-    std::optional<double> length;  ///< to which it is drawn, m; if not set, it stays as it is
-};
-
-/// A [[tool]] section. The tool is present from the first to the last key of its path. A cut has
-/// one key, the time of the cut; so has a suture.
-struct ToolSpec {
-    std::string name;
-    std::variant<Carver, BladeSpec, CutSpec, ProbeSpec, GrasperSpec, SutureSpec> kind;
-    bool is_obstacle = false;  ///< an [[obstacle]]: a probe that is always present
-    /// At least one key, for a blade at least two. The path is empty if it is not known.
-    std::vector<TimeKey<Pose>> path;
+/// The file of a triangulated surface that a tool has as its shape.
+struct SurfaceFile {
+    std::filesystem::path path;
+    double scale = 1.0;         ///< factor of all coordinates
     std::string location = {};  ///< for messages: FILE:line:column
 };
 
-/// True for blades, cuts and carvers.
-inline bool cuts(const ToolSpec& tool) {
-    return !std::holds_alternative<ProbeSpec>(tool.kind) &&
-           !std::holds_alternative<GrasperSpec>(tool.kind) &&
-           !std::holds_alternative<SutureSpec>(tool.kind);
-}
-
-/// True for tools whose force is reported: those that do not cut, and blades with a toughness.
-inline bool feels_force(const ToolSpec& tool) {
-    const auto* blade = std::get_if<BladeSpec>(&tool.kind);
-    return !cuts(tool) || (blade && blade->toughness > 0.0);
-}
+/// A [[tool]] or [[obstacle]] section. The tool is present from the first to the last key of its
+/// path. A tool without a pose has one key: the time of a cut, or at which a suture is tied.
+struct ToolSpec {
+    std::string name;
+    cutting::ToolShape shape = {};
+    std::optional<SurfaceFile> surface = {};  ///< build_tool() reads it into the shape
+    bool has_usual_mode = false;              ///< a blade: with_mode() sets its mode
+    bool is_obstacle = false;                 ///< a probe that is always present
+    /// At least one key, for a blade at least two. The path is empty if it is not known.
+    std::vector<TimeKey<Pose>> path = {};
+    std::optional<double> close = {};   ///< when jaws close, s
+    std::optional<double> open = {};    ///< when they open, s; without it, at the end of the path
+    double over = 0.0;                  ///< how long a thread is drawn, s
+    std::optional<double> length = {};  ///< to which it is drawn, m; without it, it stays as it is
+    std::string location = {};          ///< for messages: FILE:line:column
+};
 
 /// The fields that a frame can hold in addition to points, rest positions, ids and regions. The
 /// last one, which has a key of its own, stands for the arrays of physics::BodyArrays.

@@ -181,7 +181,7 @@ Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
     scenario.output = read_output(root, end_time);
     std::vector<std::string> probes;
     for (const ToolSpec& tool : scenario.tools)
-        if (feels_force(tool)) probes.push_back(tool.name);
+        if (cutting::feels_force(tool.shape)) probes.push_back(tool.name);
     scenario.expect = read_expectations(root, held, probes);
     if (!root.is_sound("mesh")) scenario.mesh = {};
     if (!root.is_sound("material")) scenario.materials.clear();

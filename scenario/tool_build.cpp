@@ -8,52 +8,14 @@
 #include <utility>
 
 #include "incise/base/error.h"
-#include "incise/base/number_format.h"
 #include "incise/cutting/exact/undividable.h"
-#include "incise/cutting/surfaces/surface_check.h"
 #include "incise/cutting/surfaces/swept_edge.h"
-#include "incise/cutting/tools/probe_shape.h"
-#include "incise/cutting/tools/solid.h"
 #include "incise/io/surface/surface_reader.h"
-#include "incise/topology/cell_point.h"
-#include "incise/topology/mesh_metrics.h"
+#include "incise/scenario/tools/tool_kind.h"
 
 namespace incise::scenario {
 
 namespace {
-
-/// The extent of a tool: the tool is within `radius` of the convex hull of `points`, in the frame
-/// of the tool.
-struct Extent {
-    std::vector<Vec3> points;
-    double radius = 0.0;
-};
-
-/// @param shape  none that is unbounded
-Extent extent_of(const auto& shape) {
-    if (const auto* sphere = std::get_if<cutting::Sphere>(&shape))
-        return {{Vec3::Zero()}, sphere->radius};
-    if (const auto* capsule = std::get_if<cutting::Capsule>(&shape))
-        return {{capsule->from, capsule->to}, capsule->radius};
-    Extent extent;
-    if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, cutting::ProbeShape>)
-        if (const auto* solid = std::get_if<cutting::Solid>(&shape))
-            return {solid->surface.points, 0.0};
-    const auto* box = std::get_if<cutting::Cuboid>(&shape);
-    const Vec3 half = box ? Vec3(0.5 * box->size) : Vec3(Vec3::Zero());
-    for (const double x : {-half.x(), half.x()})
-        for (const double y : {-half.y(), half.y()})
-            for (const double z : {-half.z(), half.z()}) extent.points.emplace_back(x, y, z);
-    return extent;
-}
-
-Extent extent_of_tool(const cutting::ToolShape& shape) {
-    if (const auto* carver = std::get_if<Carver>(&shape)) return extent_of(carver->shape);
-    if (const auto* probe = std::get_if<cutting::Probe>(&shape)) return extent_of(probe->shape);
-    if (const auto* grasper = std::get_if<cutting::Grasper>(&shape))
-        return extent_of(grasper->jaws);
-    return {std::get<cutting::Blade>(shape).edge};
-}
 
 /// Returns a box that contains the points, given in the frame of the tool, along the whole path. If
 /// the frame turns by an angle, a point at the distance r from its origin moves on a curve. The
@@ -75,39 +37,6 @@ Box swept_box(const ToolPath& path, std::span<const Vec3> points) {
     return swept;
 }
 
-cutting::ToolShape shape_of(const BladeSpec& blade) {
-    return cutting::Blade{blade.edge, blade.mode.value_or(CutMode::split),
-                          blade.snap.value_or(cutting::default_snap), blade.toughness,
-                          blade.cutting_force};
-}
-
-cutting::ToolShape shape_of(const ProbeSpec& spec, std::vector<std::string>& warnings) {
-    if (spec.surface.empty()) return spec.probe;
-    io::SurfaceFile file = io::read_surface(spec.surface);
-    for (Vec3& x : file.surface.points) x *= spec.scale;
-    bool was_turned = false;
-    cutting::Solid solid = cutting::make_solid(file.surface, was_turned);
-    if (was_turned) file.warnings.push_back("its triangles face inwards, and are turned");
-    if (const std::string fault = cutting::fault_of(solid); !fault.empty())
-        throw InputError(spec.surface.string() + ": " + fault);
-    for (const auto& warning : file.warnings)
-        warnings.push_back(spec.surface.string() + ": " + warning);
-    return cutting::Probe{std::move(solid), spec.probe.friction};
-}
-
-cutting::ToolShape shape_of(const CutSpec& cut, std::vector<std::string>& warnings) {
-    const double snap = cut.snap.value_or(cutting::default_snap);
-    if (const auto* plane = std::get_if<PlaneSpec>(&cut.along))
-        return cutting::PlaneCut{plane->point, plane->normal, snap};
-    const auto& path = std::get<std::filesystem::path>(cut.along);
-    io::SurfaceFile file = io::read_surface(path);
-    for (const auto& defect : cutting::defects_of_surface(file.surface))
-        file.warnings.push_back(defect);
-    for (const auto& warning : file.warnings) warnings.push_back(path.string() + ": " + warning);
-    for (Vec3& x : file.surface.points) x *= cut.scale;
-    return cutting::SurfaceCut{std::move(file.surface), snap};
-}
-
 }  // namespace
 
 CutMode usual_mode(const topology::Mesh& mesh) {
@@ -117,17 +46,17 @@ CutMode usual_mode(const topology::Mesh& mesh) {
 }
 
 ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
-    auto* blade = std::get_if<BladeSpec>(&spec.kind);
-    const bool is_usual = blade && !blade->mode;
-    if (is_usual) blade->mode = usual_mode(mesh);
-    // A mode that was chosen has been judged before.
-    if (is_usual && blade->toughness > 0.0 && blade->mode == CutMode::separate)
-        throw InputError("tool '" + spec.name +
-                         "' has a toughness, and the mesh has elements that are no tetrahedra: "
-                         "where it opens faces, its force is not known; leave toughness out");
-    const bool splits =
-        blade ? blade->mode == CutMode::split : std::holds_alternative<CutSpec>(spec.kind);
-    if (!splits) return spec;
+    if (spec.has_usual_mode) {
+        auto& blade = std::get<cutting::Blade>(spec.shape);
+        blade.mode = usual_mode(mesh);
+        spec.has_usual_mode = false;
+        // A mode that was chosen has been judged before.
+        if (blade.toughness > 0.0 && blade.mode == CutMode::separate)
+            throw InputError("tool '" + spec.name +
+                             "' has a toughness, and the mesh has elements that are no tetrahedra: "
+                             "where it opens faces, its force is not known; leave toughness out");
+    }
+    if (!divides(spec.shape)) return spec;
     for (const CellId e : mesh.elements())
         if (mesh.kind(e) == topology::CellKind::tetrahedron) return spec;
     throw InputError("tool '" + spec.name +
@@ -136,82 +65,31 @@ ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
 }
 
 ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings) {
-    cutting::ToolShape shape;
-    if (const auto* carver = std::get_if<Carver>(&spec.kind)) shape = *carver;
-    if (const auto* blade = std::get_if<BladeSpec>(&spec.kind)) shape = shape_of(*blade);
-    if (const auto* cut = std::get_if<CutSpec>(&spec.kind)) shape = shape_of(*cut, warnings);
-    if (const auto* probe = std::get_if<ProbeSpec>(&spec.kind)) shape = shape_of(*probe, warnings);
-    const auto* grasper = std::get_if<GrasperSpec>(&spec.kind);
-    if (grasper) shape = grasper->grasper;
-    const auto* suture = std::get_if<SutureSpec>(&spec.kind);
-    if (suture) shape = suture->suture;
+    cutting::ToolShape shape = spec.shape;
+    if (spec.surface) {
+        const std::string file_name = spec.surface->path.string();
+        io::SurfaceFile file = io::read_surface(spec.surface->path);
+        for (Vec3& x : file.surface.points) x *= spec.surface->scale;
+        try {
+            kind_of(shape).take_surface(std::move(file.surface), shape, file.warnings);
+        } catch (const InputError& error) {
+            throw InputError(file_name + ": " + error.what());
+        }
+        for (const auto& warning : file.warnings) warnings.push_back(file_name + ": " + warning);
+    }
     auto surface = cutting::cut_surface_of(shape);
-    ScriptedTool tool{spec.name, std::move(shape), ToolPath(spec.path, spec.is_obstacle),
-                      std::move(surface)};
-    if (grasper) {
-        tool.close = grasper->close;
-        tool.open = grasper->open;
-    }
-    if (suture) {
-        tool.over = suture->over;
-        tool.length = suture->length;
-    }
-    return tool;
-}
-
-void require_tissue(const ScriptedTool& tool, const topology::Mesh& mesh) {
-    const auto* suture = std::get_if<cutting::Suture>(&tool.shape);
-    if (!suture) return;
-    const double reach = suture->reach > 0.0 ? suture->reach : topology::mean_element_length(mesh);
-    for (std::size_t i = 0; i < suture->points.size(); ++i) {
-        const Vec3& x = suture->points[i];
-        if (topology::find_point(mesh, mesh.rest_positions(), x, reach)) continue;
-        std::ostringstream text;
-        text << "tool '" << tool.name << "': point " << i << " (from 0), [" << x.x() << ", "
-             << x.y() << ", " << x.z() << "], is farther than its reach, " << format_number(reach)
-             << " m, from the body at rest; check its coordinates and units";
-        throw InputError(text.str());
-    }
-}
-
-std::optional<std::string> warning_of_tissue_inside(const ScriptedTool& tool,
-                                                    const topology::Mesh& mesh) {
-    const auto* probe = std::get_if<cutting::Probe>(&tool.shape);
-    if (!probe || tool.path.keys().empty()) return std::nullopt;
-    const Pose& pose = tool.path.keys().front().value;
-    const double size = topology::mean_element_length(mesh);
-    const Vec3 margin = Vec3::Constant(1e-3 * size);
-    const Box box = cutting::box_of(probe->shape);
-    std::size_t count = 0;
-    Vec3 first = Vec3::Zero();
-    for (const VertexId n : mesh.nodes()) {
-        const Vec3 x = pose.to_tool(mesh.rest_position(n));
-        // What lies on the surface is not inside.
-        if (!Box(box.min() + margin, box.max() - margin).contains(x)) continue;
-        if (!cutting::is_inside(probe->shape, x)) continue;
-        if (const auto* half_space = std::get_if<cutting::HalfSpace>(&probe->shape);
-            half_space && half_space->normal.dot(x - half_space->point) > -1e-3 * size)
-            continue;
-        if (count++ == 0) first = mesh.rest_position(n);
-    }
-    if (count == 0) return std::nullopt;
-    std::ostringstream text;
-    text << "tool '" << tool.name << "' has " << count << (count == 1 ? " point" : " points")
-         << " of the body at rest inside it where its path begins, one of them at [" << first.x()
-         << ", " << first.y() << ", " << first.z()
-         << "]: such tissue is pushed out slowly or not at all; let the path begin outside";
-    return text.str();
+    return {spec.name,          std::move(shape), ToolPath(spec.path, spec.is_obstacle),
+            std::move(surface), spec.close,       spec.open,
+            spec.over,          spec.length};
 }
 
 bool may_meet(const ScriptedTool& tool, const Box& box) {
     if (tool.surface) return tool.surface->may_meet(box);
-    if (std::holds_alternative<cutting::Suture>(tool.shape)) return true;  // see require_tissue()
-    const auto* probe = std::get_if<cutting::Probe>(&tool.shape);
-    if (probe && std::holds_alternative<cutting::HalfSpace>(probe->shape)) return true;
-    const Extent extent = extent_of_tool(tool.shape);
-    const Box swept = swept_box(tool.path, extent.points);
+    const auto extent = kind_of(tool.shape).extent(tool.shape);
+    if (!extent) return true;
+    const Box swept = swept_box(tool.path, extent->points);
     // The second term is a margin for rounding.
-    const Vec3 margin = Vec3::Constant(extent.radius + 1e-12 * swept.diagonal().norm());
+    const Vec3 margin = Vec3::Constant(extent->radius + 1e-12 * swept.diagonal().norm());
     return box.intersects(Box(swept.min() - margin, swept.max() + margin));
 }
 
@@ -294,12 +172,12 @@ std::string instead_of_dividing(const cutting::ToolShape& shape) {
 bool divides(const cutting::ToolShape& shape) {
     if (const auto* blade = std::get_if<cutting::Blade>(&shape))
         return blade->mode == CutMode::split;
-    return !std::holds_alternative<Carver>(shape) && cutting::traits_of(shape).cuts;
+    return !std::holds_alternative<cutting::Carver>(shape) && cutting::traits_of(shape).cuts;
 }
 
 std::string for_longer_steps(const cutting::ToolShape& shape) {
     if (divides(shape)) return "move the cut away from the stiffest elements";
-    const std::string extent = std::holds_alternative<Carver>(shape) ? "shape" : "edge";
+    const std::string extent = std::holds_alternative<cutting::Carver>(shape) ? "shape" : "edge";
     return "change tool." + extent +
            " or tool.path, so that it takes those as well or leaves "
            "them more of what they hang on";

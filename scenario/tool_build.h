@@ -28,24 +28,16 @@ struct ScriptedTool {
     std::string name;
     cutting::ToolShape shape;
     ToolPath path;
-    std::shared_ptr<const cutting::CutSurface> surface;  ///< of a CutSpec; null for other tools
-    std::optional<double> close = {}, open = {};         ///< of a grasper, s
-    double over = 0.0;                                   ///< of a suture, see SutureSpec, s
-    std::optional<double> length = {};                   ///< of a suture, m
+    std::shared_ptr<const cutting::CutSurface> surface;  ///< of a cut; null for other tools
+    std::optional<double> close = {}, open = {};         ///< see ToolSpec
+    double over = 0.0;                                   ///< see ToolSpec
+    std::optional<double> length = {};                   ///< see ToolSpec
 };
 
 /// Builds a tool, and reads the file of its surface if it has one. A blade without a mode splits.
 /// If the path is not known, the tool has a path without keys. Warnings name the file.
 /// Throws InputError if the file cannot be read.
 ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings);
-
-/// Throws InputError if a point of a suture is farther from the body at rest than its reach.
-void require_tissue(const ScriptedTool& tool, const topology::Mesh& mesh);
-
-/// Returns a warning if points of the body at rest are inside a probe where its path begins.
-/// Cost: O(#nodes).
-std::optional<std::string> warning_of_tissue_inside(const ScriptedTool& tool,
-                                                    const topology::Mesh& mesh);
 
 /// Returns false only if no part of the tool is ever in the box.
 /// Cost: proportional to the size of its path or of its surface.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "incise/live/loop/tool_json.h"
+#include "incise/scenario/tools/tool_kind.h"
 
 namespace incise::live {
 
@@ -27,11 +27,12 @@ std::string message_text(std::string_view level, const std::string& text) {
 PageMessages::PageMessages(const Session& session, const PictureMaker& pictures)
     : session_(session), pictures_(pictures) {
     const auto& specs = session.simulation().scenario().tools;
-    for (std::size_t i = 0; i < specs.size(); ++i)
-        if (const sim::ToolId id = session.world().tools()[i];
-            auto definition = live::json_of(session.world().tool(id).shape))
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+        const sim::ToolId id = session.world().tools()[i];
+        if (const auto definition = scenario::definition_of(session.world().tool(id).shape))
             scripted_tools_.push_back(
-                {id, specs[i].name, specs[i].is_obstacle, std::move(*definition)});
+                {id, specs[i].name, specs[i].is_obstacle, live::json_of(*definition)});
+    }
 }
 
 std::string PageMessages::hello(bool is_operator) const {
@@ -49,9 +50,10 @@ std::string PageMessages::hello(bool is_operator) const {
                   {"regions", Json::array()},
                   {"fields", Json::array()},
                   {"scripted_tools", Json::array()},
-                  {"kinds", {"blade", "carver"}}};
-    if (session_.has_contact())
-        for (const char* kind : {"probe", "grasper", "suture"}) hello["kinds"].push_back(kind);
+                  {"kinds", Json::array()}};
+    for (const scenario::ToolKind* kind : scenario::tool_kinds())
+        if (!kind->traits().is_at_once && (session_.has_contact() || !kind->traits().touches))
+            hello["kinds"].push_back(kind->name());
     for (const int region : pictures_.mesh().regions())
         hello["regions"].push_back({{"id", region}, {"name", "region " + std::to_string(region)}});
     for (const ShownField& field : PictureMaker::fields())

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "incise/live/loop/live_loop.h"
-#include "incise/live/loop/tool_json.h"
+#include "incise/scenario/tools/tool_kind.h"
 #include "tests/live/soft_block.h"
 #include "tests/live/web_client.h"
 
@@ -220,9 +220,11 @@ TEST_F(PageWishes, ToolsOfTheScenarioAreShown) {
     });
 }
 
-TEST(ToolJson, HasAllShapesThatAPageDraws) {
+TEST(DefinitionOfTool, HasAllShapesThatAPageDraws) {
     using cutting::ToolShape;
-    const auto text = [](const ToolShape& shape) { return text_of(json_of(shape).value()); };
+    const auto text = [](const ToolShape& shape) {
+        return text_of(json_of(scenario::definition_of(shape).value()));
+    };
     EXPECT_EQ(text(cutting::Blade{.edge = {Vec3(0, 0, 1), Vec3(0, 0, 2)}}),
               R"({"edge":[[0.0,0.0,1.0],[0.0,0.0,2.0]],"kind":"blade"})");
     EXPECT_EQ(text(cutting::Grasper{cutting::Cuboid{Vec3(1, 2, 3)}}),
@@ -234,8 +236,8 @@ TEST(ToolJson, HasAllShapesThatAPageDraws) {
     EXPECT_EQ(text(cutting::Probe{solid}),
               R"({"kind":"probe","shape":{"mesh":{"points":[[0.0,0.0,0.0],[1.0,0.0,0.0],)"
               R"([0.0,1.0,0.0]],"triangles":[[0,1,2]]}}})");
-    EXPECT_EQ(json_of(ToolShape(cutting::PlaneCut{})), std::nullopt);
-    EXPECT_EQ(json_of(ToolShape(cutting::Suture{})), std::nullopt);
+    EXPECT_FALSE(scenario::definition_of(cutting::PlaneCut{}));
+    EXPECT_FALSE(scenario::definition_of(cutting::Suture{}));
 }
 
 TEST_F(PageWishes, ManyDownloadsAtOnceAreAllAnswered) {

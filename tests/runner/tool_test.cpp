@@ -67,9 +67,9 @@ TEST(Tool, IsPresentFromFirstToLastKey) {
     EXPECT_FALSE(tool.is_present(3.0, 4.0));
 }
 
-ToolSpec spec_of(decltype(ToolSpec::kind) kind, std::vector<TimeKey<Pose>> path) {
+ToolSpec spec_of(cutting::ToolShape shape, std::vector<TimeKey<Pose>> path) {
     ToolSpec spec;
-    spec.kind = std::move(kind);
+    spec.shape = std::move(shape);
     spec.path = std::move(path);
     return spec;
 }
@@ -82,9 +82,9 @@ bool may_meet_unit_box(const ToolSpec& spec) {
 TEST(Tool, MayMeetABoxByPathAndReach) {
     const auto at = [](double x) { return TimeKey<Pose>{0.0, pose_at({x, 0.5, 0.5})}; };
     const auto there = [](double x) { return TimeKey<Pose>{1.0, pose_at({x, 0.5, 0.5})}; };
-    const Carver ball{cutting::Sphere{0.25}};
-    const Carver rod{cutting::Capsule{{0, 0, 0}, {0.5, 0, 0}, 0.25}};
-    const Carver block{cutting::Cuboid{{0.5, 4, 4}}};
+    const cutting::Carver ball{cutting::Sphere{0.25}};
+    const cutting::Carver rod{cutting::Capsule{{0, 0, 0}, {0.5, 0, 0}, 0.25}};
+    const cutting::Carver block{cutting::Cuboid{{0.5, 4, 4}}};
     EXPECT_TRUE(may_meet_unit_box(spec_of(ball, {at(1.24)})));
     EXPECT_FALSE(may_meet_unit_box(spec_of(ball, {at(1.26)})));
     EXPECT_TRUE(may_meet_unit_box(spec_of(ball, {at(-5), there(5)})));  // right through
@@ -93,11 +93,11 @@ TEST(Tool, MayMeetABoxByPathAndReach) {
     EXPECT_FALSE(may_meet_unit_box(spec_of(rod, {at(-0.76)})));
     EXPECT_TRUE(may_meet_unit_box(spec_of(block, {at(1.24)})));
     EXPECT_FALSE(may_meet_unit_box(spec_of(block, {at(1.26)})));
-    const BladeSpec blade{{{0, -1, 0}, {0, 1, 0}}, CutMode::split, {}};
+    const cutting::Blade blade{{{0, -1, 0}, {0, 1, 0}}};
     EXPECT_TRUE(may_meet_unit_box(spec_of(blade, {at(3), there(0.99)})));
     EXPECT_FALSE(may_meet_unit_box(spec_of(blade, {at(3), there(1.01)})));
     const auto cut_at = [](double x) {
-        return CutSpec{PlaneSpec{{x, 0, 0}, Vec3::UnitX()}, 1.0, {}};
+        return cutting::PlaneCut{{x, 0, 0}, Vec3::UnitX()};
     };
     EXPECT_TRUE(may_meet_unit_box(spec_of(cut_at(0.9), {at(0)})));
     EXPECT_FALSE(may_meet_unit_box(spec_of(cut_at(1.1), {at(0)})));
@@ -108,7 +108,7 @@ TEST(Tool, MayMeetWhateverItReachesWhileTurning) {
     for (const double angle : {0.1, 0.5, 1.0, 0.99 * pi}) {
         const Pose down = pose_at({0, 0, 0}, Vec3::UnitZ(), -angle / 2),
                    up = pose_at({0, 3, -2}, Vec3::UnitZ(), angle / 2);
-        ToolSpec spec = spec_of(BladeSpec{{{1, 0, 0}, {2, 0, 0}}, CutMode::split, {}},
+        ToolSpec spec = spec_of(cutting::Blade{{{1, 0, 0}, {2, 0, 0}}},
                                 {{0.0, down}, {1.0, up}});
         std::vector<std::string> warnings;
         const ScriptedTool tool = build_tool(spec, warnings);

@@ -159,19 +159,19 @@ TEST(ScenarioReader, ReadsTools) {
     const auto s = ScenarioFile(full).read().scenario;
     ASSERT_EQ(s.tools.size(), 3u);
     EXPECT_EQ(s.tools[0].name, "carver_1");
-    const auto& capsule = std::get<cutting::Capsule>(std::get<Carver>(s.tools[0].kind).shape);
+    const auto& capsule = std::get<cutting::Capsule>(std::get<cutting::Carver>(s.tools[0].shape).shape);
     EXPECT_EQ(capsule.to, Vec3(0, 0, 1));
     EXPECT_EQ(capsule.radius, 0.1);
     EXPECT_EQ(s.tools[0].path[0].value.position, Vec3(1, 2, 3));
     EXPECT_TRUE(s.tools[0].path[0].value.rotation.isApprox(Eigen::Quaterniond::Identity()));
     EXPECT_EQ(s.tools[1].name, "knife");
-    EXPECT_EQ(std::get<BladeSpec>(s.tools[1].kind).edge.size(), 3u);
+    EXPECT_EQ(std::get<cutting::Blade>(s.tools[1].shape).edge.size(), 3u);
     EXPECT_EQ(s.tools[1].path[1].time, 0.8);
     const Eigen::AngleAxisd turn(s.tools[1].path[1].value.rotation);
     EXPECT_EQ(turn.axis(), Vec3(1, 0, 0));
     EXPECT_NEAR(turn.angle(), 0.2, 1e-15);
     EXPECT_EQ(s.tools[2].name, "carver_2");
-    EXPECT_EQ(std::get<cutting::Cuboid>(std::get<Carver>(s.tools[2].kind).shape).size,
+    EXPECT_EQ(std::get<cutting::Cuboid>(std::get<cutting::Carver>(s.tools[2].shape).shape).size,
               Vec3(1, 2, 3));
 }
 
