@@ -52,9 +52,10 @@ class BladeKind final : public ToolKind {
 
 }  // namespace
 
-const ToolKind& blade_kind() {
-    static const BladeKind kind;
-    return kind;
-}
+template <>
+struct KindFor<cutting::Blade> {
+    using type = BladeKind;
+};
+template const ToolKind& kind_for<cutting::Blade>();
 
 }  // namespace incise::scenario

@@ -32,9 +32,10 @@ class CarverKind final : public ToolKind {
 
 }  // namespace
 
-const ToolKind& carver_kind() {
-    static const CarverKind kind;
-    return kind;
-}
+template <>
+struct KindFor<cutting::Carver> {
+    using type = CarverKind;
+};
+template const ToolKind& kind_for<cutting::Carver>();
 
 }  // namespace incise::scenario

@@ -55,9 +55,16 @@ class CutKind final : public ToolKind {
 
 }  // namespace
 
-const ToolKind& cut_kind() {
-    static const CutKind kind;
-    return kind;
-}
+template <>
+struct KindFor<cutting::PlaneCut> {
+    using type = CutKind;
+};
+template const ToolKind& kind_for<cutting::PlaneCut>();
+
+template <>
+struct KindFor<cutting::SurfaceCut> {
+    using type = CutKind;
+};
+template const ToolKind& kind_for<cutting::SurfaceCut>();
 
 }  // namespace incise::scenario

@@ -44,9 +44,10 @@ class GrasperKind final : public ToolKind {
 
 }  // namespace
 
-const ToolKind& grasper_kind() {
-    static const GrasperKind kind;
-    return kind;
-}
+template <>
+struct KindFor<cutting::Grasper> {
+    using type = GrasperKind;
+};
+template const ToolKind& kind_for<cutting::Grasper>();
 
 }  // namespace incise::scenario

@@ -1,4 +1,4 @@
-// The kinds of tools, one line for each. Internal to the folder.
+// How a kind of tool makes itself known. Internal to the folder.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -6,15 +6,15 @@
 
 namespace incise::scenario {
 
-const ToolKind& carver_kind();
-const ToolKind& blade_kind();
-const ToolKind& cut_kind();
-const ToolKind& probe_kind();
-const ToolKind& grasper_kind();
-const ToolKind& suture_kind();
+/// The class of the kind of a shape. The file of each kind specializes it, and instantiates
+/// kind_for() for the shape: a shape without that does not link.
+template <class Shape>
+struct KindFor;
 
-/// All kinds, in the order in which messages name them.
-inline constexpr const ToolKind& (*all_kinds[])() = {carver_kind, blade_kind,   cut_kind,
-                                                     probe_kind,  grasper_kind, suture_kind};
+template <class Shape>
+const ToolKind& kind_for() {
+    static const typename KindFor<Shape>::type kind;
+    return kind;
+}
 
 }  // namespace incise::scenario

@@ -20,7 +20,7 @@ constexpr ToolKey probe_keys[] = {{"shape", shape_hint, true}, {"friction"}};
 constexpr std::string_view solid_keys[] = {"half_space", "sphere", "capsule", "box", "surface"};
 constexpr std::span<const std::string_view> without_half_space = std::span(solid_keys).subspan(1);
 constexpr std::string_view solid_file_keys[] = {"file", "scale"};
-constexpr std::string_view half_space_keys[] = {"point", "normal"};
+constexpr std::string_view plane_side_keys[] = {"point", "normal"};
 
 /// Reads the keys of a probe or an obstacle. Without a sound one, the shape is a ball.
 void read_solid(const TableReader& tool, bool is_obstacle, const std::filesystem::path& folder,
@@ -45,7 +45,7 @@ void read_solid(const TableReader& tool, bool is_obstacle, const std::filesystem
                 spec.surface = {std::move(file), scale, surface->location_text("file")};
         }
         if (const auto half_space =
-                is_obstacle ? shape->table("half_space", {half_space_keys}) : std::nullopt) {
+                is_obstacle ? shape->table("half_space", {plane_side_keys}) : std::nullopt) {
             half_space->require("point", "a point of its surface, as in point = [0, 0, 0]");
             half_space->require("normal", "towards the free side, as in normal = [0, 0, 1]");
             probe.shape = cutting::HalfSpace{half_space->vector("point"),
@@ -158,10 +158,11 @@ std::optional<std::string> ProbeKind::warning_of_begin(const ScriptedTool& tool,
 
 }  // namespace
 
-const ToolKind& probe_kind() {
-    static const ProbeKind kind;
-    return kind;
-}
+template <>
+struct KindFor<cutting::Probe> {
+    using type = ProbeKind;
+};
+template const ToolKind& kind_for<cutting::Probe>();
 
 void read_obstacle(const TableReader& obstacle, const std::filesystem::path& folder,
                    ToolSpec& spec) {

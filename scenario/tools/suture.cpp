@@ -77,9 +77,10 @@ class SutureKind final : public ToolKind {
 
 }  // namespace
 
-const ToolKind& suture_kind() {
-    static const SutureKind kind;
-    return kind;
-}
+template <>
+struct KindFor<cutting::Suture> {
+    using type = SutureKind;
+};
+template const ToolKind& kind_for<cutting::Suture>();
 
 }  // namespace incise::scenario

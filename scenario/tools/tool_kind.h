@@ -33,8 +33,7 @@ struct Extent {
     double radius = 0.0;
 };
 
-/// A kind of tool. Each is a class of its own, in the file of this folder that has its name;
-/// tool_kinds() has them all.
+/// A kind of tool. Each is a class of its own, in the file of this folder that has its name.
 ///
 /// A tool with a pose has the key `path`, another one the key `time`.
 class ToolKind {
@@ -98,7 +97,10 @@ class ToolKind {
     Motion motion_;
 };
 
-/// Returns all kinds of tools, in the order in which messages name them.
+/// Returns the kind of the tools with a shape of this type. Defined in the file of the kind.
+template <class Shape>
+const ToolKind& kind_for();
+/// Returns all kinds of tools, in the order of cutting::ToolShape.
 std::span<const ToolKind* const> tool_kinds();
 /// Returns the kind of a tool.
 const ToolKind& kind_of(const cutting::ToolShape& shape);

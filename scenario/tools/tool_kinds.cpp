@@ -1,23 +1,32 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
-#include <array>
 
-#include "incise/scenario/tools/kinds.h"
+#include "incise/scenario/tools/tool_kind.h"
 
 namespace incise::scenario {
 
+namespace {
+
+/// Returns the kinds of the alternatives of a variant, each once.
+template <class... Shapes>
+std::vector<const ToolKind*> kinds_of(const std::variant<Shapes...>*) {
+    std::vector<const ToolKind*> kinds;
+    for (const ToolKind* kind : {&kind_for<Shapes>()...})
+        if (std::ranges::find(kinds, kind->name(), &ToolKind::name) == kinds.end())
+            kinds.push_back(kind);
+    return kinds;
+}
+
+}  // namespace
+
 std::span<const ToolKind* const> tool_kinds() {
-    static const auto kinds = [] {
-        std::array<const ToolKind*, std::size(all_kinds)> all{};
-        std::ranges::transform(all_kinds, all.begin(), [](const auto& kind) { return &kind(); });
-        return all;
-    }();
+    static const auto kinds = kinds_of(static_cast<const cutting::ToolShape*>(nullptr));
     return kinds;
 }
 
 const ToolKind& kind_of(const cutting::ToolShape& shape) {
-    const std::string_view name = cutting::traits_of(shape).kind;
-    return **std::ranges::find(tool_kinds(), name, &ToolKind::name);
+    return std::visit(
+        []<class Shape>(const Shape&) -> const ToolKind& { return kind_for<Shape>(); }, shape);
 }
 
 std::optional<Value> definition_of(const cutting::ToolShape& shape) {

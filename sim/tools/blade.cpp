@@ -111,8 +111,10 @@ class BladeActor final : public ActorOf<Blade> {
 
 }  // namespace
 
-std::unique_ptr<ToolActor> make_actor_of(const Blade&, const ToolDef& def) {
-    return std::make_unique<BladeActor>(def);
-}
+template <>
+struct ActorFor<Blade> {
+    using type = BladeActor;
+};
+template std::unique_ptr<ToolActor> make_actor_of<Blade>(const ToolDef&);
 
 }  // namespace incise::sim

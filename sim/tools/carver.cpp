@@ -22,8 +22,10 @@ class CarverActor final : public ActorOf<cutting::Carver> {
 
 }  // namespace
 
-std::unique_ptr<ToolActor> make_actor_of(const cutting::Carver&, const ToolDef& def) {
-    return std::make_unique<CarverActor>(def);
-}
+template <>
+struct ActorFor<cutting::Carver> {
+    using type = CarverActor;
+};
+template std::unique_ptr<ToolActor> make_actor_of<cutting::Carver>(const ToolDef&);
 
 }  // namespace incise::sim

@@ -48,12 +48,16 @@ class CutActor final : public ActorOf<Shape> {
 
 }  // namespace
 
-std::unique_ptr<ToolActor> make_actor_of(const cutting::PlaneCut&, const ToolDef& def) {
-    return std::make_unique<CutActor<cutting::PlaneCut>>(def);
-}
+template <>
+struct ActorFor<cutting::PlaneCut> {
+    using type = CutActor<cutting::PlaneCut>;
+};
+template std::unique_ptr<ToolActor> make_actor_of<cutting::PlaneCut>(const ToolDef&);
 
-std::unique_ptr<ToolActor> make_actor_of(const cutting::SurfaceCut&, const ToolDef& def) {
-    return std::make_unique<CutActor<cutting::SurfaceCut>>(def);
-}
+template <>
+struct ActorFor<cutting::SurfaceCut> {
+    using type = CutActor<cutting::SurfaceCut>;
+};
+template std::unique_ptr<ToolActor> make_actor_of<cutting::SurfaceCut>(const ToolDef&);
 
 }  // namespace incise::sim

@@ -67,8 +67,10 @@ class GrasperActor final : public ActorOf<cutting::Grasper> {
 
 }  // namespace
 
-std::unique_ptr<ToolActor> make_actor_of(const cutting::Grasper&, const ToolDef& def) {
-    return std::make_unique<GrasperActor>(def);
-}
+template <>
+struct ActorFor<cutting::Grasper> {
+    using type = GrasperActor;
+};
+template std::unique_ptr<ToolActor> make_actor_of<cutting::Grasper>(const ToolDef&);
 
 }  // namespace incise::sim

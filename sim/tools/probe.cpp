@@ -60,8 +60,10 @@ class ProbeActor final : public ActorOf<cutting::Probe> {
 
 }  // namespace
 
-std::unique_ptr<ToolActor> make_actor_of(const cutting::Probe&, const ToolDef& def) {
-    return std::make_unique<ProbeActor>(def);
-}
+template <>
+struct ActorFor<cutting::Probe> {
+    using type = ProbeActor;
+};
+template std::unique_ptr<ToolActor> make_actor_of<cutting::Probe>(const ToolDef&);
 
 }  // namespace incise::sim

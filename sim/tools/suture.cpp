@@ -80,8 +80,10 @@ class SutureActor final : public ActorOf<cutting::Suture> {
 
 }  // namespace
 
-std::unique_ptr<ToolActor> make_actor_of(const cutting::Suture&, const ToolDef& def) {
-    return std::make_unique<SutureActor>(def);
-}
+template <>
+struct ActorFor<cutting::Suture> {
+    using type = SutureActor;
+};
+template std::unique_ptr<ToolActor> make_actor_of<cutting::Suture>(const ToolDef&);
 
 }  // namespace incise::sim

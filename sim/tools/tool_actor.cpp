@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "incise/base/error.h"
-#include "incise/sim/tools/kinds.h"
 
 namespace incise::sim {
 
@@ -83,7 +82,7 @@ namespace {
 
 std::unique_ptr<ToolActor> sound_actor(const ToolDef& def, const Tissue& tissue) {
     auto actor =
-        std::visit([&](const auto& shape) { return make_actor_of(shape, def); }, def.shape);
+        std::visit([&]<class Shape>(const Shape&) { return make_actor_of<Shape>(def); }, def.shape);
     actor->require_fit(tissue);
     return actor;
 }

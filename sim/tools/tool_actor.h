@@ -141,6 +141,10 @@ class ActorOf : public ToolActor {
     const Shape& shape() const { return std::get<Shape>(def().shape); }
 };
 
+/// Makes an actor from its definition, which has a shape of this type. Defined in the file of its
+/// kind. Throws InputError if the shape is invalid.
+template <class Shape>
+std::unique_ptr<ToolActor> make_actor_of(const ToolDef& def);
 /// Makes the actor of a new tool. Throws InputError if its definition is invalid, or if it cannot
 /// act on the tissue.
 std::unique_ptr<ToolActor> make_actor(const ToolDef& def, const Tissue& tissue);

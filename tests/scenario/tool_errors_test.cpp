@@ -24,7 +24,7 @@ TEST(ToolErrors, OfPathsAndKinds) {
         "scene.toml:9:1: key 'obstacle[0]': an obstacle touches tissue, but [contact] has "
         "enabled = false");
     EXPECT_EQ(error_of("[[tool]]\nsnap = 0.1\n"),
-              "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of carver, blade, cut, "
+              "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of blade, carver, cut, "
               "probe, grasper, suture");
     const std::string path = "path = [{ time = 0, at = [0, 0, 0] }]\n";
     EXPECT_EQ(error_of("[[tool]]\nkind = \"carver\"\nedge = [[0, 0, 0]]\nshape = {}\n" + path),
