@@ -138,10 +138,11 @@ std::vector<std::string> Session::execute(const Order& order) {
                     throw InputError("suture '" + it.name + "' is untied, not withdrawn");
                 withdrawn.is_to_be_withdrawn = true;
             } else if constexpr (std::is_same_v<T, CloseGrasper>) {
-                if (world.close_grasper(tool_in_hand(it.name).id) == 0)
+                const sim::ToolId id = tool_in_hand(it.name).id;
+                if (world.close_tool(id) == 0 && cutting::traits_of(world.tool(id).shape).holds)
                     warnings.push_back("grasper '" + it.name + "' closes on nothing");
             } else if constexpr (std::is_same_v<T, OpenGrasper>) {
-                world.open_grasper(tool_in_hand(it.name).id);
+                world.open_tool(tool_in_hand(it.name).id);
             } else if constexpr (std::is_same_v<T, DrawSuture>) {
                 LedTool& thread = tool(it.name);
                 world.set_suture_length(thread.id, it.length);  // refuses what cannot be

@@ -50,7 +50,7 @@ InputError for a tool of the wrong kind, and incise.Error while another thread u
                                    const auto& def = driver_of(tool).world().tool(tool.id);
                                    return cutting::traits_of(def.shape).kind;
                                }),
-                               "'blade', 'carver', 'cut', 'probe', 'grasper' or 'suture'.")
+                               "The key `kind` of its definition, such as 'blade'.")
         .def_property_readonly("is_scripted", held(+[](const Tool& tool) {
                                    return driver_of(tool).is_scripted(tool.id);
                                }),
@@ -100,11 +100,12 @@ toughness. For a suture it is the force on its thread at its first point; its le
 It still acts in that call, with a pose that is set before or after this. Its cut ends where the
 blade then is. A new pose after that brings it back, for another cut.)")
         .def("close", held(+[](const Tool& tool) { return driver_of(tool).close(tool.id); }),
-             R"(Close the jaws of a grasper. They hold the surface that is in them from now on.
+             R"(Close the jaws of a grasper, or begin to close scissors.
 
-Returns how many points they hold: 0 if there is no tissue in them.)")
+Jaws hold the surface that is in them from now on. Returns how many points they hold: 0 if there is
+no tissue in them. Scissors close while the world steps, in their closing_time; they hold nothing.)")
         .def("open", held(+[](const Tool& tool) { driver_of(tool).open(tool.id); }),
-             "Open the jaws of a grasper. The tissue keeps its velocity.")
+             "Open the jaws of a grasper, or begin to open scissors. Tissue keeps its velocity.")
         .def_property_readonly(
             "held",
             held(+[](const Tool& tool) { return driver_of(tool).world().num_held(tool.id); }),

@@ -314,10 +314,9 @@ a time that has passed. At the present time nothing happens.)")
 
 name: letters, digits, _ and -; no other tool of the world has it. A tool cannot be removed; one
     that was withdrawn costs nothing.
-definition: a dict with the keys of [[tool]] without times and path: kind and, for a
-    blade: edge, mode, snap, toughness, cutting_force;  carver: shape;  probe: shape, friction;
-    grasper: shape, max_force;  suture: points, stiffness, max_force, reach;
-    cut: plane or surface, snap. A cut divides the body in the next step.
+definition: a dict with the keys of [[tool]] without times and path: kind, and the keys of the kind.
+    docs/tools.md and docs/contact.md have them all; a wrong one is refused, with those that there
+    are. A tool with kind "cut" divides the body in the next step.
 pose: a Pose where the tool is now. None: the tool is there from the first pose that you set.
 Raises InputError with all faults of the definition.
 

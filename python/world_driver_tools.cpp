@@ -108,12 +108,12 @@ void WorldDriver::withdraw_tool(sim::ToolId tool) {
 
 std::size_t WorldDriver::close(sim::ToolId tool) {
     require_led(tool);
-    return world_.close_grasper(tool);
+    return world_.close_tool(tool);
 }
 
 void WorldDriver::open(sim::ToolId tool) {
     require_led(tool);
-    world_.open_grasper(tool);
+    world_.open_tool(tool);
 }
 
 std::size_t WorldDriver::tie(sim::ToolId tool) {

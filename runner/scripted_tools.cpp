@@ -41,9 +41,9 @@ void ScriptedTools::move_jaws(sim::World& world, sim::ToolId tool, double time,
     const auto& [path, close, open, over, length] = scripts_[tool.index];
     if (!close) return;
     const bool is_to_be_closed = time >= *close && !(open && time >= *open);
-    if (is_to_be_closed == world.is_grasper_closed(tool)) return;
-    if (!is_to_be_closed) return world.open_grasper(tool);
-    if (world.close_grasper(tool) == 0) {
+    if (is_to_be_closed == world.is_tool_closed(tool)) return;
+    if (!is_to_be_closed) return world.open_tool(tool);
+    if (world.close_tool(tool) == 0 && cutting::traits_of(world.tool(tool).shape).holds) {
         lost_.push_back(tool.index);
         warnings.push_back("grasper '" + world.tool(tool).name +
                            "' closes on nothing at t = " + format_number(time) +
@@ -78,8 +78,8 @@ void ScriptedTools::warn_of_lost_holds(const sim::World& world,
                                        std::vector<std::string>& warnings) {
     for (std::size_t i = 0; i < scripts_.size(); ++i) {
         const sim::ToolId tool = world.tools()[i];
-        if (world.is_grasper_closed(tool) && world.num_held(tool) == 0 &&
-            std::ranges::find(lost_, i) == lost_.end()) {
+        if (cutting::traits_of(world.tool(tool).shape).holds && world.is_tool_closed(tool) &&
+            world.num_held(tool) == 0 && std::ranges::find(lost_, i) == lost_.end()) {
             lost_.push_back(i);
             warnings.push_back("grasper '" + world.tool(tool).name +
                                "' holds nothing from t = " + format_number(world.time()) +

@@ -101,7 +101,8 @@ void for_each_surface(const ScriptedTool& tool, double end_time,
     const auto& keys = tool.path.keys();
     if (keys.empty() || keys.front().time > end_time || !divides(tool.shape)) return;
     if (tool.surface) return look(*tool.surface);
-    const auto& blade = std::get<cutting::Blade>(tool.shape);
+    const auto* blade = std::get_if<cutting::Blade>(&tool.shape);
+    if (!blade) return;
     // Where the edge turns, its points move on arcs. Short parts approximate these.
     constexpr double longest_turn = 0.05;
     for (std::size_t key = 1; key < keys.size(); ++key) {
@@ -113,7 +114,7 @@ void for_each_surface(const ScriptedTool& tool, double end_time,
             const double at =
                 part == num_parts ? to.time : from.time + part * (to.time - from.time) / num_parts;
             std::vector<Vec3> points;
-            cutting::place_edge(blade, tool.path.pose(std::min(at, end_time)), points);
+            cutting::place_edge(*blade, tool.path.pose(std::min(at, end_time)), points);
             return points;
         };
         for (int part = 0; part < num_parts; ++part)

@@ -82,9 +82,9 @@ void World::withdraw_tool(ToolId id, const Pose* pose_before) {
     parts_->tool_of(id).withdraw(pose_before);
 }
 
-std::size_t World::close_grasper(ToolId id) { return parts_->tool_of(id).close(parts_->tissue()); }
-void World::open_grasper(ToolId id) { parts_->tool_of(id).open(); }
-bool World::is_grasper_closed(ToolId id) const { return parts_->tool_of(id).is_closed(); }
+std::size_t World::close_tool(ToolId id) { return parts_->tool_of(id).close(parts_->tissue()); }
+void World::open_tool(ToolId id) { parts_->tool_of(id).open(); }
+bool World::is_tool_closed(ToolId id) const { return parts_->tool_of(id).is_closed(); }
 std::size_t World::num_held(ToolId id) const { return parts_->tool_of(id).num_held(); }
 
 std::size_t World::tie_suture(ToolId id) { return parts_->tool_of(id).tie(parts_->tissue()); }

@@ -201,11 +201,11 @@ class World {
     /// Closes the jaws of a grasper: they take hold of the surface that is in them at the present
     /// pose of the tool, and carry it from now on. Returns how many points they hold.
     /// Throws InputError if the tool is no grasper, or is not there.
-    std::size_t close_grasper(ToolId tool);
-    /// Opens the jaws: the tissue keeps its velocity. Throws as close_grasper() does.
-    void open_grasper(ToolId tool);
-    /// True from close_grasper() to open_grasper(), also if all tissue has slipped out of the jaws.
-    bool is_grasper_closed(ToolId tool) const;
+    std::size_t close_tool(ToolId tool);
+    /// Opens the jaws: the tissue keeps its velocity. Throws as close_tool() does.
+    void open_tool(ToolId tool);
+    /// True from close_tool() to open_tool(), also if all tissue has slipped out of the jaws.
+    bool is_tool_closed(ToolId tool) const;
     /// Returns how many points a grasper holds: 0 if it is open, or if all have slipped out.
     std::size_t num_held(ToolId tool) const;
     /// Passes the thread of a suture through its points, at the present positions of the tissue

@@ -96,6 +96,7 @@ void World::Parts::step_to(double end) {
         model.set_grip(i, physics::TimeCurve<Pose>({{time, pose}, {end, target}}));
         pose = target;
     }
+    for (const auto& tool : tools) tool->begin_step(end - time);
     move_to(end);
     time = end;
     ++num_steps;

@@ -2,6 +2,7 @@
 #include "incise/cutting/tools/tool.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "incise/cutting/surfaces/plane.h"
@@ -15,6 +16,14 @@ std::shared_ptr<const CutSurface> cut_surface_of(const ToolShape& shape) {
     if (const auto* cut = std::get_if<SurfaceCut>(&shape))
         return std::make_shared<TriangleSurface>(cut->surface);
     return nullptr;
+}
+
+std::array<Vec3, 2> meeting_line(const Scissors& scissors, double closed) {
+    // The blades never meet in the pivot itself: a line without length cuts nothing.
+    constexpr double nearest = 0.02;  // of the length
+    const double along = scissors.length * std::lerp(nearest, 1.0, closed);
+    const double across = along * std::tan(0.5 * scissors.angle);
+    return {Vec3(-across, 0.0, -along), Vec3(across, 0.0, -along)};
 }
 
 void place_edge(const Blade& blade, const Pose& pose, std::vector<Vec3>& edge) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <variant>
@@ -32,6 +33,8 @@ struct ToolTraits {
     bool touches = false;     ///< tissue exerts a force on it, whatever its values are
     bool has_pose = true;     ///< without one it is where the tissue is
     bool is_at_once = false;  ///< it lies in the frame of the world, and cuts in one step
+    bool holds = false;       ///< it can hold tissue, and lose it
+    const char* article = "a ";
 };
 
 /// A tool that cuts along what its edge sweeps. The edge is in the frame of the tool.
@@ -85,7 +88,7 @@ struct Probe {
 
 /// A tool whose jaws hold the surface of the tissue that is in them when they close.
 struct Grasper {
-    static constexpr ToolTraits traits{.kind = "grasper", .touches = true};
+    static constexpr ToolTraits traits{.kind = "grasper", .touches = true, .holds = true};
     CarverShape jaws;  ///< what they enclose
     /// The largest force that they hold, N; above it tissue slips out of them.
     double max_force = std::numeric_limits<double>::infinity();
@@ -108,7 +111,23 @@ struct Suture {
     }
 };
 
-using ToolShape = std::variant<Blade, Carver, PlaneCut, SurfaceCut, Probe, Grasper, Suture>;
+/// Two blades that turn about the origin of the tool, in the plane of its axes x and z, and point
+/// along -z. While they close they cut the tissue that is between them when they are open: where
+/// they meet, which goes from the pivot to the tips.
+struct Scissors {
+    static constexpr ToolTraits traits{.kind = "scissors", .cuts = true, .article = ""};
+    static constexpr double largest_angle = 2.5;  ///< rad; the blades are below it
+    double length = 0.0;                          ///< from the pivot to the tips, m
+    double angle = 0.6;                           ///< between the blades when they are open, rad
+    double closing_time = 0.2;                    ///< from open to closed, s; they open as fast
+    double snap = default_snap;                   ///< see SplitOptions
+    static void archive(auto& ar, auto& self) {
+        ar(self.length, self.angle, self.closing_time, self.snap);
+    }
+};
+
+using ToolShape =
+    std::variant<Blade, Carver, PlaneCut, SurfaceCut, Probe, Grasper, Suture, Scissors>;
 
 /// Returns what the kind of a tool tells about it.
 inline const ToolTraits& traits_of(const ToolShape& shape) {
@@ -130,6 +149,11 @@ inline bool feels_force(const ToolShape& shape) {
 
 /// Returns the surface of a PlaneCut or a SurfaceCut, and null for other tools.
 std::shared_ptr<const CutSurface> cut_surface_of(const ToolShape& shape);
+
+/// Returns the line along which scissors cut, in their frame, m: across what their open blades
+/// enclose, at the place where the blades meet.
+/// @param closed  from 0, open, to 1, closed
+std::array<Vec3, 2> meeting_line(const Scissors& scissors, double closed);
 
 /// Sets `edge` to the points of a blade's edge at a pose of the blade, m. Memory of `edge` is
 /// reused.

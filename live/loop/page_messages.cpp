@@ -121,7 +121,7 @@ Json PageMessages::state_of(const LedTool& tool, const LoopState& loop) const {
     if (is_suture) state["length"] = world.suture_length(tool.id);
     if (tool.kind == "grasper") {
         state["held"] = world.num_held(tool.id);
-        state["closed"] = world.is_grasper_closed(tool.id);
+        state["closed"] = world.is_tool_closed(tool.id);
     }
     return state;
 }

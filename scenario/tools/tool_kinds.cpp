@@ -41,7 +41,7 @@ std::string owners_of(std::string_view key) {
     std::vector<std::string> owners;
     for (const ToolKind* kind : tool_kinds())
         if (std::ranges::find(kind->keys(), key, &ToolKey::name) != kind->keys().end())
-            owners.push_back("a " + std::string(kind->name()));
+            owners.push_back(kind->traits().article + std::string(kind->name()));
     std::string text;
     for (std::size_t i = 0; i < owners.size(); ++i)
         text += (i == 0 ? "" : i + 1 == owners.size() ? " or " : ", ") + owners[i];

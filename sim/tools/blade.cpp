@@ -1,10 +1,10 @@
 // The blade: a tool that cuts along what its edge sweeps.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cmath>
-#include <vector>
 
 #include "incise/base/number_format.h"
 #include "incise/contact/blade_contact.h"
+#include "incise/sim/tools/edge_cut.h"
 #include "incise/sim/tools/kinds.h"
 #include "incise/sim/tools/shape_faults.h"
 
@@ -52,50 +52,40 @@ class BladeActor final : public ActorOf<Blade> {
         return &*contact_;
     }
     contact::ToolContact* contact() override { return contact_ ? &*contact_ : nullptr; }
-    void end_contact() override { contact_.reset(); }
+    void let_go() override { contact_.reset(); }
     bool is_in_tissue(const cutting::Cutter& cutter) const override {
-        return cut_ && cutter.is_in_tissue(*cut_);
+        return edge_.is_in_tissue(cutter);
     }
 
   private:
     void cut(const Tissue& tissue, const CarryOut& carry_out) override {
         carry_out([&] {
-            cutting::place_edge(shape(), pose(), edge_before_);
-            cutting::place_edge(shape(), target(), edge_after_);
-            motion_.resize(shape().edge.size(), Vec3::Zero());
-            if (edge_before_ != edge_after_) find_motion();
+            cutting::place_edge(shape(), pose(), edge_.before);
+            cutting::place_edge(shape(), target(), edge_.after);
             if (shape().mode == cutting::CutMode::separate)
-                return tissue.cutter.separate(tissue.mesh, edge_before_, edge_after_);
-            return tissue.cutter.split(*cut_, tissue.mesh, edge_before_, edge_after_);
+                return tissue.cutter.separate(tissue.mesh, edge_.before, edge_.after);
+            return edge_.split(tissue);
         });
     }
     void leave(const Tissue& tissue, const CarryOut& carry_out) override {
         if (!is_in_tissue(tissue.cutter)) return;
         if (pose_before_end()) {
-            cutting::place_edge(shape(), *pose_before_end(), edge_before_);
-            find_motion();
+            cutting::place_edge(shape(), *pose_before_end(), edge_.before);
+            edge_.find_motion();
         }
-        const cutting::BladeEnd blade(edge_after_, motion_);
-        carry_out([&] {
-            return tissue.cutter.end_cut(*cut_, tissue.mesh, tissue.model.fragments(), blade);
-        });
+        carry_out([&] { return edge_.end(tissue); });
     }
-    void find_motion() {
-        for (std::size_t i = 0; i < motion_.size(); ++i)
-            motion_[i] = edge_after_[i] - edge_before_[i];
-    }
+    bool splits() const { return shape().mode == cutting::CutMode::split; }
     void begin(const Tissue& tissue) override {
-        if (shape().mode == cutting::CutMode::split) cut_ = tissue.cutter.begin_cut(shape().snap);
+        if (splits()) edge_.begin(tissue.cutter, shape().snap);
     }
     void save_own(ArchiveWriter& ar) const override {
-        ar(cut_, motion_, contact_.has_value());
+        edge_.save(ar);
+        ar(contact_.has_value());
         if (contact_) contact_->save(ar);
     }
     void restore_own(ArchiveReader& ar, const Tissue& tissue) override {
-        ar(cut_, motion_);
-        const bool splits = shape().mode == cutting::CutMode::split;
-        if (cut_.has_value() != splits || (cut_ && !tissue.cutter.has_cut(*cut_)) ||
-            (!motion_.empty() && motion_.size() != shape().edge.size()))
+        if (!edge_.restore(ar, tissue.cutter, splits(), shape().edge.size()))
             refuse("has a cut of another one");
         if (!ar.read<bool>()) return;
         if (!tissue.contact) refuse("touches tissue, and there is no contact");
@@ -103,9 +93,7 @@ class BladeActor final : public ActorOf<Blade> {
         contact_->restore(ar);
     }
 
-    std::optional<cutting::CutId> cut_;  // with the mode split
-    // At the edge of the blade before and after a step, and its last motion, m.
-    std::vector<Vec3> edge_before_, edge_after_, motion_;
+    EdgeCut edge_;
     std::optional<contact::BladeContact> contact_;  // of a blade that feels a force
 };
 

@@ -38,7 +38,7 @@ class GrasperActor final : public ActorOf<cutting::Grasper> {
         return &*contact_;
     }
     contact::ToolContact* contact() override { return contact_ ? &*contact_ : nullptr; }
-    void end_contact() override {
+    void let_go() override {
         contact_.reset();
         is_closed_ = false;
     }

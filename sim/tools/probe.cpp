@@ -41,7 +41,7 @@ class ProbeActor final : public ActorOf<cutting::Probe> {
         return &*contact_;
     }
     contact::ToolContact* contact() override { return contact_ ? &*contact_ : nullptr; }
-    void end_contact() override { contact_.reset(); }
+    void let_go() override { contact_.reset(); }
 
   private:
     void save_own(ArchiveWriter& ar) const override {

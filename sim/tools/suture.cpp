@@ -46,7 +46,7 @@ class SutureActor final : public ActorOf<cutting::Suture> {
     }
     double length() const override { return is_present() ? length_ : 0.0; }
     void untie() override {
-        end_contact();
+        let_go();
         set_present(false);
     }
     bool is_tied() const override { return is_present() && num_held() >= 2; }
@@ -57,7 +57,7 @@ class SutureActor final : public ActorOf<cutting::Suture> {
         return contact();
     }
     contact::ToolContact* contact() override { return contact_ ? &*contact_ : nullptr; }
-    void end_contact() override { contact_.reset(); }
+    void let_go() override { contact_.reset(); }
 
   private:
     void arrive() override { length_ = target_length_; }

@@ -31,7 +31,7 @@ void ToolActor::place(const Tissue& tissue, const Pose& pose) {
     require_pose(pose);
     if (is_in_tissue(tissue.cutter))
         refuse("is in the tissue: withdraw it before it is put elsewhere");
-    end_contact();
+    let_go();
     set_present(true);
     pose_ = target_ = pose;
 }
@@ -51,8 +51,8 @@ void ToolActor::withdraw(const Pose* pose_before_end) {
     if (pose_before_end) pose_before_end_ = *pose_before_end;
 }
 
-std::size_t ToolActor::close(const Tissue&) { refuse("is no grasper"); }
-void ToolActor::open() { refuse("is no grasper"); }
+std::size_t ToolActor::close(const Tissue&) { refuse("has no jaws that close"); }
+void ToolActor::open() { refuse("has no jaws that open"); }
 std::size_t ToolActor::tie(const Tissue&) { refuse("is no suture"); }
 void ToolActor::set_length_target(double) { refuse("is no suture"); }
 double ToolActor::length() const { refuse("is no suture"); }

@@ -66,6 +66,8 @@ class ToolActor {
     virtual void untie();
     virtual bool is_tied() const;
 
+    /// Prepares what the tool does in a step of `dt`, s.
+    virtual void begin_step(double /*dt*/) {}
     /// Returns in how many parts a step must be divided for the motion of the tool.
     /// @param element_size  mean length of an element at rest, m
     virtual double num_parts(double /*element_size*/) const { return 1.0; }
@@ -79,11 +81,11 @@ class ToolActor {
 
     /// Returns the contact of the tool; null if it has touched nothing since it came.
     virtual contact::ToolContact* contact() { return nullptr; }
-    /// Takes the tool out of the contact.
-    virtual void end_contact() {}
+    /// Lets go of the tissue: ends the contact, and opens jaws.
+    virtual void let_go() {}
     /// Ends the step in which the tool left.
     void forget_leaving() {
-        end_contact();
+        let_go();
         has_just_left_ = false;
     }
     /// True if the tool divides elements and its cut ends in one.

@@ -236,6 +236,8 @@ TEST(DefinitionOfTool, HasAllShapesThatAPageDraws) {
     EXPECT_EQ(text(cutting::Probe{solid}),
               R"({"kind":"probe","shape":{"mesh":{"points":[[0.0,0.0,0.0],[1.0,0.0,0.0],)"
               R"([0.0,1.0,0.0]],"triangles":[[0,1,2]]}}})");
+    EXPECT_EQ(text(cutting::Scissors{.length = 2.0, .angle = 0.5}),
+              R"({"angle":0.5,"kind":"scissors","length":2.0})");
     EXPECT_FALSE(scenario::definition_of(cutting::PlaneCut{}));
     EXPECT_FALSE(scenario::definition_of(cutting::Suture{}));
 }

@@ -152,7 +152,7 @@ class Texts(unittest.TestCase):
         refused("is not allowed", lambda: body.add_tool("", support.BLADE))
         self.assertEqual(body.tools, {})
         knife = body.add_tool("knife", support.BLADE)
-        refused("is no grasper", knife.close)
+        refused("has no jaws", knife.close)
         refused("is no suture", knife.tie)
         refused("is no suture", lambda: knife.tighten(1.0))
         refused("is not there to be withdrawn", knife.withdraw)

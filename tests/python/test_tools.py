@@ -107,6 +107,25 @@ class Tools(unittest.TestCase):
         jaws.open()
         self.assertEqual(jaws.held, 0)
 
+    def test_scissors_part_the_block(self) -> None:
+        body = support.world()
+        low, high = body.positions.min(axis=0), body.positions.max(axis=0)
+        size = high - low
+        # They point along y, and open along z.
+        turn = incise.Pose.turned([0, 0, 0], [1, -1, 1], 2 * np.pi / 3).rotation
+        at = [low[0] + 0.53 * size[0], low[1] - size[1], low[2] + 0.5 * size[2]]
+        scissors = body.add_tool("scissors", {"kind": "scissors", "length": 2.2 * size[1],
+                                              "angle": 2.0, "closing_time": 0.01},
+                                 incise.Pose(at, turn))
+        self.assertEqual(scissors.kind, "scissors")
+        self.assertEqual(body.run_until(0.005).edits, [])
+        self.assertEqual(scissors.close(), 0)
+        self.assertGreater(len(body.run_until(0.02).edits), 0)
+        self.assertEqual(body.ledger()["components"], 2)
+        self.assertFalse(scissors.is_in_tissue)
+        scissors.open()
+        self.assertEqual(body.run_until(0.04).edits, [])
+
     def test_suture_draws_points_together(self) -> None:
         body = support.world()
         thread = body.add_tool("thread", {"kind": "suture", "stiffness": 50.0,

@@ -142,5 +142,38 @@ TEST(TouchingTools, FramesOfRunsWithoutContactHaveNoSuchFields) {
     EXPECT_FALSE(simulation.world().contact_forces().has_value());
 }
 
+// Scissors close and open at their times, and the run is the same after a checkpoint or without.
+TEST(TouchingTools, ScissorsCutBetweenTheirTimes) {
+    const RunFolder folder;
+    // They lie across the cube, at half its height.
+    const std::string scissors = R"(
+[[tool]]
+kind = "scissors"
+length = 0.2
+angle = 2
+closing_time = 0.05
+close = 0.02
+open = 0.1
+path = [
+  { time = 0, at = [0.052, -0.05, 0.05], rotate = { axis = [1, -1, 1], angle = 2.0943951023931953 } },
+  { time = 0.2, at = [0.052, -0.05, 0.05], rotate = { axis = [1, -1, 1], angle = 2.0943951023931953 } },
+]
+)";
+    Simulation simulation(folder.scenario(soft_cube + dynamics(0.2, "damping = 20\n") + scissors +
+                                          "[output]\ninterval = 0.01\n"));
+    const ToolId tool = simulation.world().tools()[0];
+    run_to(simulation, 0.019);
+    EXPECT_FALSE(simulation.world().is_tool_closed(tool));
+    EXPECT_EQ(simulation.edits().size(), 0U);
+    run_to(simulation, 0.09);
+    EXPECT_TRUE(simulation.world().is_tool_closed(tool));
+    EXPECT_EQ(topology::components(simulation.world().mesh()).count, 2);
+    const std::size_t num_edits = simulation.edits().size();
+    run_to(simulation, 0.2);
+    EXPECT_FALSE(simulation.world().is_tool_present(tool));
+    EXPECT_EQ(simulation.edits().size(), num_edits);
+    EXPECT_EQ(simulation.warnings(), std::vector<std::string>{});
+}
+
 }  // namespace
 }  // namespace incise::runner

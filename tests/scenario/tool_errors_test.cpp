@@ -25,7 +25,7 @@ TEST(ToolErrors, OfPathsAndKinds) {
         "enabled = false");
     EXPECT_EQ(error_of("[[tool]]\nsnap = 0.1\n"),
               "scene.toml:9:1: key 'tool[0].kind': is missing: must be one of blade, carver, cut, "
-              "probe, grasper, suture");
+              "probe, grasper, suture, scissors");
     const std::string path = "path = [{ time = 0, at = [0, 0, 0] }]\n";
     EXPECT_EQ(error_of("[[tool]]\nkind = \"carver\"\nedge = [[0, 0, 0]]\nshape = {}\n" + path),
               "scene.toml:11:8: key 'tool[0].edge': belongs to a blade: leave it out | "
@@ -159,6 +159,32 @@ TEST(ToolErrors, OfSutures) {
     EXPECT_EQ(far[0],
               "scene.toml:9:1: tool 'suture_1': point 0 (from 0), [0.2, 0.2, 1.1], is farther than "
               "its reach, 0.05 m, from the body at rest; check its coordinates and units");
+}
+
+TEST(ToolErrors, OfScissors) {
+    const std::string scissors = "[[tool]]\nkind = \"scissors\"\n";
+    const std::string path =
+        "path = [{ time = 0.1, at = [0, 0, 0] }, { time = 0.9, at = [0, 0, 0] }]\n";
+    EXPECT_EQ(error_of(scissors + "length = 2\nclose = 0.2\nopen = 0.5\nangle = 1\n"
+                                  "closing_time = 0.1\nsnap = 0\n" + path),
+              "");
+    EXPECT_EQ(error_of(scissors + path),
+              "scene.toml:9:1: key 'tool[0].length': is missing: from the pivot to the tips, m, as "
+              "in length = 0.02 | scene.toml:9:1: key 'tool[0].close': is missing: when they begin "
+              "to close, seconds, as in close = 0.2");
+    EXPECT_EQ(error_of(scissors + "length = 0\nangle = 2.5\nclosing_time = 0\nclose = 1\n" + path),
+              "scene.toml:11:10: key 'tool[0].length': 0 is not allowed: must be above 0 | "
+              "scene.toml:12:9: key 'tool[0].angle': 2.5 is not allowed: must be above 0 and below "
+              "2.5 | scene.toml:13:16: key 'tool[0].closing_time': 0 is not allowed: must be above "
+              "0 | scene.toml:14:9: key 'tool[0].close': 1 is not allowed: must be within the path, "
+              "from 0.1 to 0.9 s");
+    EXPECT_EQ(error_of(scissors + "length = 1\nclose = 0.2\npath = [{ time = 0, at = [0, 0, 0] }]\n"),
+              "scene.toml:13:8: key 'tool[0].path': must have at least 2 times: scissors are there "
+              "from the first to the last");
+    EXPECT_EQ(error_of("[[tool]]\nkind = \"blade\"\nedge = [[0, 0, 0], [0, 0, 1]]\nangle = 1\n"
+                       "close = 0.5\n" + path),
+              "scene.toml:12:9: key 'tool[0].angle': belongs to scissors: leave it out | "
+              "scene.toml:13:9: key 'tool[0].close': belongs to a grasper or scissors: leave it out");
 }
 
 TEST(ToolErrors, OfCuts) {

@@ -239,9 +239,9 @@ TEST(Contact, OfAToolThatIsPlacedAnewIsWithWhatIsThere) {
 
     const ToolId grasper = world.add_tool({"grasper", cutting::Grasper{cutting::Sphere{0.02}}});
     world.place_tool(grasper, at({0.08, 0.02, size}));
-    EXPECT_GT(world.close_grasper(grasper), 0u);
+    EXPECT_GT(world.close_tool(grasper), 0u);
     world.place_tool(grasper, at({0.08, 0.02, 2.0 * size}));
-    EXPECT_FALSE(world.is_grasper_closed(grasper));
+    EXPECT_FALSE(world.is_tool_closed(grasper));
     world.step(0.5 * world.stable_step());
     EXPECT_EQ(world.report().tools[1].force, Vec3(Vec3::Zero()));
 }
@@ -338,7 +338,7 @@ Held held_by_grasper(double max_force = std::numeric_limits<double>::infinity())
     const ToolId grasper =
         world.add_tool({"grasper", cutting::Grasper{cutting::Sphere{0.03}, max_force}});
     world.place_tool(grasper, at({0.05, 0.05, 0.0}));
-    EXPECT_GT(world.close_grasper(grasper), 4u);
+    EXPECT_GT(world.close_tool(grasper), 4u);
     return {std::move(world), grasper};
 }
 
@@ -355,8 +355,8 @@ TEST(Contact, OfAGrasperCarriesTissueAndFeelsItsForce) {
     EXPECT_GT(force, 0.1);
     EXPECT_NEAR(force, world.reaction(world.constraints()[0]).force.z(), 0.01 * force);
     EXPECT_LT(world.ledger().energy_error(), 0.01);
-    world.open_grasper(grasper);
-    EXPECT_FALSE(world.is_grasper_closed(grasper));
+    world.open_tool(grasper);
+    EXPECT_FALSE(world.is_tool_closed(grasper));
     run_until(world, world.time() + 1.0);
     EXPECT_EQ(world.report().tools[0].force, Vec3(Vec3::Zero()));
     for (const VertexId n : nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }))
@@ -373,12 +373,12 @@ TEST(Contact, OfAGrasperWithoutNodesHoldsAFace) {
         const ToolId grasper = world.add_tool({"grasper", cutting::Grasper{jaws}});
         const Vec3 place(size, 0.035, 0.04);  // on the side x = size
         world.place_tool(grasper, at(place));
-        EXPECT_EQ(world.close_grasper(grasper), 1u);
+        EXPECT_EQ(world.close_tool(grasper), 1u);
         EXPECT_EQ(world.num_held(grasper), 1u);
         run_until(world, 0.05);
         // It bears a part of the weight of the cube, which hangs in it.
         EXPECT_LT(world.report().tools[0].force.z(), 0.0);
-        world.open_grasper(grasper);
+        world.open_tool(grasper);
         EXPECT_EQ(world.num_held(grasper), 0u);
     }
 }
@@ -395,7 +395,7 @@ TEST(Contact, OfAGrasperSlipsAboveItsLargestForce) {
     }
     EXPECT_LE(largest, 0.3 * needed * (1.0 + 1e-9));
     EXPECT_GT(largest, 0.2 * needed);
-    EXPECT_TRUE(world.is_grasper_closed(grasper));
+    EXPECT_TRUE(world.is_tool_closed(grasper));
     EXPECT_EQ(world.report().tools[0].force, Vec3(Vec3::Zero()));  // all has slipped out
 }
 
@@ -430,10 +430,10 @@ TEST(Contact, RefusesWhatItCannotDo) {
     }
     World world(soft_body());
     const ToolId away = world.add_tool({"jaws", cutting::Grasper{cutting::Sphere{0.01}}});
-    EXPECT_NE(input_error_of([&] { world.close_grasper(away); }).find("not there"),
+    EXPECT_NE(input_error_of([&] { world.close_tool(away); }).find("not there"),
               std::string::npos);
     const ToolId blade = world.add_tool(scalpel());
-    EXPECT_NE(input_error_of([&] { world.open_grasper(blade); }).find("no grasper"),
+    EXPECT_NE(input_error_of([&] { world.open_tool(blade); }).find("no jaws"),
               std::string::npos);
     EXPECT_NE(input_error_of([&] {
                   world.add_tool({"jaws", cutting::Grasper{cutting::Sphere{0.01}, 0.0}});

@@ -137,8 +137,8 @@ class TouchingProgram {
     }
 
     void move_grasper(int i, double dt) {
-        if (i == close_at_) world_.close_grasper(grasper_);
-        if (i == open_at_) world_.open_grasper(grasper_);
+        if (i == close_at_) world_.close_tool(grasper_);
+        if (i == open_at_) world_.open_tool(grasper_);
         grasper_pose_.position += dt * grasper_velocity_;
         world_.set_tool_pose(grasper_, grasper_pose_);
     }
