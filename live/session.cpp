@@ -169,7 +169,8 @@ scenario::HeldTool Session::checked(const AddTool& order) const {
                 require_sensible(*value);
     scenario::HeldTool built = scenario::build_held_tool(
         order.definition, simulation_.scenario().folder, simulation_.mesh(), why_no_contact_);
-    if (built.kind == "cut") throw InputError("a cut is not led by hand: take a blade");
+    if (cutting::traits_of(built.shape).is_at_once)
+        throw InputError("a cut is not led by hand: take a blade");
     return built;
 }
 

@@ -33,7 +33,8 @@ struct ToolTraits {
     bool touches = false;     ///< tissue exerts a force on it, whatever its values are
     bool has_pose = true;     ///< without one it is where the tissue is
     bool is_at_once = false;  ///< it lies in the frame of the world, and cuts in one step
-    bool holds = false;       ///< it can hold tissue, and lose it
+    bool closes = false;      ///< it closes and opens
+    bool holds = false;       ///< it holds tissue while it is closed, and can lose it
     const char* article = "a ";
 };
 
@@ -88,7 +89,8 @@ struct Probe {
 
 /// A tool whose jaws hold the surface of the tissue that is in them when they close.
 struct Grasper {
-    static constexpr ToolTraits traits{.kind = "grasper", .touches = true, .holds = true};
+    static constexpr ToolTraits traits{
+        .kind = "grasper", .touches = true, .closes = true, .holds = true};
     CarverShape jaws;  ///< what they enclose
     /// The largest force that they hold, N; above it tissue slips out of them.
     double max_force = std::numeric_limits<double>::infinity();
@@ -115,7 +117,8 @@ struct Suture {
 /// along -z. While they close they cut the tissue that is between them when they are open: where
 /// they meet, which goes from the pivot to the tips.
 struct Scissors {
-    static constexpr ToolTraits traits{.kind = "scissors", .cuts = true, .article = ""};
+    static constexpr ToolTraits traits{
+        .kind = "scissors", .cuts = true, .closes = true, .article = ""};
     static constexpr double largest_angle = 2.5;  ///< rad; the blades are below it
     double length = 0.0;                          ///< from the pivot to the tips, m
     double angle = 0.6;                           ///< between the blades when they are open, rad

@@ -119,10 +119,9 @@ Json PageMessages::state_of(const LedTool& tool, const LoopState& loop) const {
                   {"torque", json_of(tool.torque)},
                   {"pose", json_of(is_suture ? Pose() : world.tool_pose(tool.id))}};
     if (is_suture) state["length"] = world.suture_length(tool.id);
-    if (tool.kind == "grasper") {
-        state["held"] = world.num_held(tool.id);
-        state["closed"] = world.is_tool_closed(tool.id);
-    }
+    const cutting::ToolTraits& traits = cutting::traits_of(world.tool(tool.id).shape);
+    if (traits.holds) state["held"] = world.num_held(tool.id);
+    if (traits.closes) state["closed"] = world.is_tool_closed(tool.id);
     return state;
 }
 

@@ -218,6 +218,24 @@ describe('hands', { timeout: whole }, () => {
         await live.until(() => !window.incise.state().tools.some((tool) => tool.mine && tool.present && Math.hypot(...tool.force) > 0));
     });
 
+    test('ScissorsCutWhileTheyAreHeld', { timeout }, async () => {
+        const middle = await live.middle();
+        await live.press('7');
+        assert.equal(await live.ask(() => document.getElementById('tool-title')?.textContent), 'Scissors');
+        // Over the body the wheel turns them, and does not zoom.
+        await live.page.mouse.move(middle.x, middle.y);
+        const camera = await live.ask(() => window.incise.camera());
+        await live.page.mouse.wheel(0, 100);
+        await live.page.mouse.down();
+        await live.until(() => window.incise.state().tools.some((tool) => tool.mine && tool.kind === 'scissors' && tool.closed));
+        await live.until(() => window.incise.state().edits > 0);
+        await live.page.mouse.up();
+        await live.until(() => !window.incise.state().tools.some((tool) => tool.mine && tool.present));
+        const moved = (await live.ask(() => window.incise.camera())).map((value, i) => Math.abs(value - camera[i]));
+        assert.ok(Math.max(...moved) < 1e-9);
+        assert.ok((await live.state()).cut_area > 0);
+    });
+
     test('BurrRemovesElementsAndShowsTheInside', { timeout }, async () => {
         const { elements } = await live.state();
         const middle = await live.middle();

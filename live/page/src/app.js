@@ -13,9 +13,7 @@ import { HandCheck } from './hand_check.js';
 import { Keyboard } from './keyboard.js';
 import { Legend } from './legend.js';
 import { Messages } from './messages.js';
-import { Ball } from './modes/ball.js';
-import { Grasper } from './modes/grasper.js';
-import { Scalpel } from './modes/scalpel.js';
+import { modes } from './modes/index.js';
 import { Suture } from './modes/suture.js';
 import { Overlay } from './overlay.js';
 import { Pointer } from './pointer.js';
@@ -25,15 +23,10 @@ import { Section } from './section.js';
 import { SectionPanel } from './section_panel.js';
 import { suitable } from './settings.js';
 import { Tissue } from './tissue.js';
+import { Toolbar } from './toolbar.js';
 import { ToolPanel } from './tool_panel.js';
 import { ToolsView } from './tools_view.js';
 
-/** @typedef {import('./tool_panel.js').ModeName} ModeName */
-
-/** @type {ModeName[]} */
-const modeNames = ['look', 'scalpel', 'probe', 'grasper', 'suture', 'burr'];
-/** The kind of tool that a mode takes. @type {Record<ModeName, string>} */
-const kinds = { look: '', scalpel: 'blade', probe: 'probe', grasper: 'grasper', suture: 'suture', burr: 'carver' };
 const speeds = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
 /** Milliseconds after which a tool in the hand moves on, though no picture was drawn. */
 const moveWithin = 30;
@@ -46,7 +39,6 @@ export class App {
     /** Numbers of frames and of greetings that came. */
     frames = 0;
     greetings = 0;
-    /** @type {ModeName} */
     modeName = 'look';
     settings = suitable(0.005, 0.1);
     messages = new Messages(element('messages'));
@@ -87,16 +79,14 @@ export class App {
             send: (/** @type {Record<string, unknown>} */ order) => void this.send(order),
             changed: () => this.#changed(),
         };
-        this.suture = new Suture(bench);
-        /** @type {Record<ModeName, import('./modes/mode.js').Mode|null>} */
-        this.modes = {
-            look: null,
-            scalpel: new Scalpel(bench),
-            probe: new Ball(bench, 'probe', 'probe', 'press'),
-            grasper: new Grasper(bench),
-            suture: this.suture,
-            burr: new Ball(bench, 'carver', 'burr', 'bite'),
-        };
+        /** @type {Map<string, import('./modes/mode.js').Mode|null>} */
+        this.modes = new Map(modes.map(({ name, make }) => [name, make?.(bench) ?? null]));
+        this.suture = /** @type {Suture} */ (this.modes.get('suture'));
+        this.toolbar = new Toolbar((mode, byMouse) => {
+            this.setMode(mode);
+            // After a click of the mouse the keys belong to the picture.
+            if (byMouse) this.scene.canvas.focus({ preventScroll: true });
+        });
         this.toolPanel = new ToolPanel(this.settings, this.suture);
         this.sectionPanel = new SectionPanel(
             this.section,
@@ -131,7 +121,7 @@ export class App {
     }
 
     get mode() {
-        return this.modes[this.modeName];
+        return this.modes.get(this.modeName) ?? null;
     }
 
     get isOperator() {
@@ -231,10 +221,7 @@ export class App {
         element('get-record').hidden = !hello.recording;
         element('get-record').setAttribute('href', `/recording.jsonl${token}`);
         element('get-frame').setAttribute('href', `/frame.vtu${token}`);
-        for (const one of this.#modeButtons()) {
-            const kind = kinds[/** @type {ModeName} */ (one.dataset.mode)];
-            one.hidden = (kind !== '' && !hello.kinds.includes(kind)) || (kind === 'probe' && !hello.has_contact);
-        }
+        this.toolbar.offer(hello);
         this.#changed();
         this.#showStatus();
     }
@@ -355,29 +342,19 @@ export class App {
         this.scene.invalidate();
     }
 
-    /** @param {ModeName} name */
+    /** @param {string} name */
     setMode(name) {
         this.pointer.stop();
         if (!this.hand.isEmpty) this.mode?.end();
         this.modeName = name;
         this.#cursor.hide();
-        for (const one of this.#modeButtons()) one.setAttribute('aria-pressed', String(one.dataset.mode === name));
+        this.toolbar.choose(name);
         this.toolPanel.setMode(name);
         this.pointer.arrange();
         this.scene.invalidate();
     }
 
-    #modeButtons() {
-        return /** @type {HTMLButtonElement[]} */ ([...document.querySelectorAll('[data-mode]')]);
-    }
-
     #bindButtons() {
-        for (const one of this.#modeButtons())
-            one.onclick = (event) => {
-                this.setMode(/** @type {ModeName} */ (one.dataset.mode));
-                // After a click of the mouse the keys belong to the picture.
-                if (event.detail > 0) this.scene.canvas.focus({ preventScroll: true });
-            };
         const commands = this.#commands();
         button('pause').onclick = commands.pause;
         button('step').onclick = commands.step;
@@ -421,8 +398,9 @@ export class App {
         const send = (/** @type {Record<string, unknown>} */ order) => void this.send(order);
         return {
             mode: (index) => {
-                if (this.#modeButtons()[index]?.hidden) return;
-                this.setMode(modeNames[index]);
+                const mode = this.toolbar.offered(index);
+                if (!mode) return;
+                this.setMode(mode);
                 this.scene.canvas.focus({ preventScroll: true });
             },
             pause: () => send({ do: 'pause', on: !this.state?.paused }),
@@ -541,7 +519,7 @@ export class App {
         if (this.#lost) write('loading-text', 'The program does not answer. Trying again …');
         else this.#showStage();
         write('notice-text', this.#lost ? 'Connection lost. Trying again …' : watching ? 'Another page holds the tools' : '');
-        for (const one of this.#modeButtons()) one.disabled = !this.isOperator && one.dataset.mode !== 'look';
+        this.toolbar.enable(this.isOperator);
         const field = /** @type {HTMLSelectElement} */ (element('field'));
         field.disabled = !this.isOperator;
         if (this.state && document.activeElement !== field) field.value = this.state.field;

@@ -102,7 +102,7 @@ export class Keyboard {
             this.#commands.pause();
             return true;
         }
-        if (/^[1-6]$/.test(key)) {
+        if (/^[1-9]$/.test(key)) {
             this.#commands.mode(Number(key) - 1);
             return true;
         }

@@ -1,21 +1,11 @@
 // What the user chose for the tools. Lengths are in metres and begin at what suits the mesh.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+import { modes } from './modes/index.js';
 
 /**
- * @typedef {Object} Settings
- * @property {number} depth of the scalpel's tip below the surface
- * @property {boolean} through the scalpel parts all that it passes over
- * @property {boolean} resistance the scalpel feels the toughness of the tissue
- * @property {number} probe radius
- * @property {number} press depth of the probe
- * @property {number} grip radius of the grasper
- * @property {number} burr radius
- * @property {number} bite depth of the burr
- * @property {number} stiffness of a suture, N/m
+ * Sliders of the modes set numbers; each mode says what they mean.
+ * @typedef {Record<string, any> & {depth: number, through: boolean, resistance: boolean, stiffness: number}} Settings
  */
-
-/** Toughness of soft tissue that the blade feels, J/m^2. */
-export const toughness = 160;
 
 /**
  * @param {number} element mean edge
@@ -24,16 +14,6 @@ export const toughness = 160;
  * @returns {Settings}
  */
 export function suitable(element, diagonal, touches = true) {
-    const burr = Math.max(1.5 * element, 0.02 * diagonal);
-    return {
-        depth: 1.5 * element,
-        through: false,
-        resistance: touches,
-        probe: Math.max(1.5 * element, 0.03 * diagonal),
-        press: Math.max(1.2 * element, 0.02 * diagonal),
-        grip: Math.max(1.5 * element, 0.02 * diagonal),
-        burr,
-        bite: 0.6 * burr,
-        stiffness: 200,
-    };
+    const all = modes.map((mode) => mode.suitable?.(element, diagonal, touches) ?? {});
+    return /** @type {Settings} */ (Object.assign({}, ...all));
 }

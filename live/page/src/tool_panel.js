@@ -2,31 +2,24 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 import { button, element, input, write } from './dom.js';
 import { length, withUnit } from './format.js';
+import { modeOf, modes } from './modes/index.js';
 
-/** @typedef {'look'|'scalpel'|'probe'|'grasper'|'suture'|'burr'} ModeName */
+const sliders = modes.flatMap((mode) => (mode.sliders ?? []).map((slider) => ({ ...slider, mode: mode.name })));
 
-/** @type {Record<ModeName, [string, string]>} */
-const words = {
-    look: ['Look', 'Drag turns the view, the wheel zooms.'],
-    scalpel: ['Scalpel', 'Drag to cut. The wheel moves the blade in and out. A stroke over the edge parts the body.'],
-    probe: ['Probe', 'Drag to press. The wheel presses deeper.'],
-    grasper: ['Grasper', 'Press to close the jaws, drag to pull. The wheel moves them along the view.'],
-    suture: ['Suture', 'Click points; Enter or a double click ties. Then the wheel tightens.'],
-    burr: ['Burr', 'Drag to remove tissue. The wheel goes deeper.'],
-};
-
-/**
- * Sliders go in even ratios from the least (in element sizes) to the most (in diagonals of the body).
- * @type {[id: 'depth'|'probe'|'press'|'grip'|'burr'|'bite', least: number, most: number][]}
- */
-const sliders = [
-    ['depth', 0.3, 0.35],
-    ['probe', 0.5, 0.12],
-    ['press', 0.1, 0.2],
-    ['grip', 0.5, 0.12],
-    ['burr', 0.7, 0.12],
-    ['bite', 0.1, 0.15],
-];
+/** Puts the sliders of all modes into the settings. */
+function addSliders() {
+    for (const { id, label, says, mode } of [...sliders].reverse()) {
+        const row = document.createElement('label');
+        row.dataset.for = mode;
+        const value = document.createElement('output');
+        value.id = `${id}-value`;
+        const range = document.createElement('input');
+        Object.assign(range, { id, type: 'range', min: '0', max: '100', step: '1' });
+        range.setAttribute('aria-label', says);
+        row.append(`${label} `, value, range);
+        element('tool-hint').after(row);
+    }
+}
 
 export class ToolPanel {
     #settings;
@@ -41,7 +34,8 @@ export class ToolPanel {
     constructor(settings, suture) {
         this.#settings = settings;
         this.#suture = suture;
-        for (const [id, least, most] of sliders)
+        addSliders();
+        for (const { id, least, most } of sliders)
             input(id).oninput = () => {
                 const [low, high] = this.#range(least, most);
                 settings[id] = low * (high / low) ** (Number(input(id).value) / 100);
@@ -73,9 +67,9 @@ export class ToolPanel {
         this.show();
     }
 
-    /** @param {ModeName} mode */
+    /** @param {string} mode */
     setMode(mode) {
-        const [title, hint] = words[mode];
+        const { title, hint } = modeOf(mode);
         write('tool-title', title);
         write('tool-hint', hint);
         for (const part of document.querySelectorAll('#tool-settings [data-for]'))
@@ -85,7 +79,7 @@ export class ToolPanel {
 
     /** Shows the settings as they are. */
     show() {
-        for (const [id, least, most] of sliders) {
+        for (const { id, least, most } of sliders) {
             const [low, high] = this.#range(least, most);
             const value = this.#settings[id];
             input(id).value = String((100 * Math.log(Math.max(value, low) / low)) / Math.log(high / low));

@@ -24,6 +24,7 @@ import {
 } from 'three';
 import { toCreasedNormals } from 'three/addons/utils/BufferGeometryUtils.js';
 import { matrixOf } from './hand.js';
+import { modeOfKind } from './modes/index.js';
 
 const up = new Vector3(0, 1, 0);
 
@@ -41,6 +42,15 @@ function span(part, from, to, width) {
     if (part.visible) part.quaternion.setFromUnitVectors(up, along.divideScalar(length));
     part.scale.set(width, Math.max(length, 1e-12), width);
 }
+
+/**
+ * What a mode draws a tool with, in the frame of the tool.
+ * @typedef {Object} Brush
+ * @property {(edge: number[][], width: number, side: number[]) => void} ribbon a sharp strip along a line of points, m,
+ *     that extends to one side of it
+ * @property {(width: number) => void} shaft the handle of a tool that a hand leads, m
+ * @property {number} size diagonal of the body, m
+ */
 
 /** @typedef {'held'|'ghost'|'scripted'|'obstacle'} Part what a tool is in the scene */
 
@@ -141,7 +151,8 @@ export class ToolsView {
         for (const tool of tools) {
             if (!tool.present || !tool.pose || tool.kind === 'suture') continue;
             seen.add(tool.name);
-            this.#place(tool.name, tool.tool, tool.pose, camera, 'held');
+            const shown = modeOfKind(tool.kind)?.shown?.(tool) ?? tool.tool;
+            this.#place(tool.name, shown, tool.pose, camera, 'held');
         }
         if (wanted) {
             seen.add('?');
@@ -225,6 +236,9 @@ export class ToolsView {
             add(this.#ribbon(tool.edge, long ? 0.008 * size : 0.03 * size, !scripted), this.blade);
             if (!long) shaft(0.016 * size);
         }
+        const ribbon = (/** @type {number[][]} */ edge, /** @type {number} */ width, /** @type {number[]} */ side) =>
+            void add(this.#ribbon(edge, width, !scripted, new Vector3().fromArray(side)), this.blade);
+        modeOfKind(tool.kind)?.draw?.(tool, { ribbon, shaft, size });
         const { sphere, box, capsule, mesh, plane } = tool.shape ?? {};
         if (sphere) {
             add(this.#ball, tool.kind === 'grasper' ? this.zone : solid).scale.setScalar(sphere.radius);
@@ -280,11 +294,14 @@ export class ToolsView {
         mesh.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), n);
     }
 
-    /** A strip behind the edge of a blade. @param {number[][]} edge @param {number} width @param {boolean} pointed */
-    #ribbon(edge, width, pointed) {
+    /**
+     * A strip behind the edge of a blade.
+     * @param {number[][]} edge @param {number} width @param {boolean} pointed @param {Vector3|null} [towards] its side
+     */
+    #ribbon(edge, width, pointed, towards = null) {
         // The strip is to stand upright, where the edge does not.
         const along = new Vector3().fromArray(edge[edge.length - 1]).sub(new Vector3().fromArray(edge[0])).normalize();
-        const side = Math.abs(along.z) < 0.8 ? new Vector3(0, 0, 1).addScaledVector(along, -along.z).normalize() : new Vector3(1, 0, 0);
+        const side = towards ?? (Math.abs(along.z) < 0.8 ? new Vector3(0, 0, 1).addScaledVector(along, -along.z).normalize() : new Vector3(1, 0, 0));
         /** @type {number[]} */
         const positions = [];
         /** @type {number[]} */

@@ -13,7 +13,9 @@
  * @property {number} [toughness] of a blade, J/m^2
  * @property {number} [friction]
  * @property {number[][]} [points] of a suture, rest coordinates, m
- * @property {number} [length] of a suture, m
+ * @property {number} [length] of a suture, or of the blades of scissors, m
+ * @property {number} [angle] between the blades of scissors, rad
+ * @property {number} [closing_time] of scissors, s
  */
 
 /**

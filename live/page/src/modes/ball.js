@@ -106,3 +106,41 @@ export class Ball extends Mode {
         return { tool: this.#definition(), pose: poseOf(this.#centre(hit.point, into, 0), into) };
     }
 }
+
+/** @type {import('./mode.js').ModeFacts} */
+export const probe = {
+    name: 'probe',
+    kind: 'probe',
+    title: 'Probe',
+    tip: 'drag to press',
+    hint: 'Drag to press. The wheel presses deeper.',
+    icon: '<path d="M20.5 3.5 11 13"/><circle cx="8.5" cy="15.5" r="3.5"/><path d="M2.5 19.5c2 2.5 10 2.5 12 0"/>',
+    sliders: [
+        { id: 'probe', label: 'Radius', says: 'Radius of the probe', least: 0.5, most: 0.12 },
+        { id: 'press', label: 'Press', says: 'How deep the probe presses', least: 0.1, most: 0.2 },
+    ],
+    suitable: (element, diagonal) => ({
+        probe: Math.max(1.5 * element, 0.03 * diagonal),
+        press: Math.max(1.2 * element, 0.02 * diagonal),
+    }),
+    make: (bench) => new Ball(bench, 'probe', 'probe', 'press'),
+};
+
+/** @type {import('./mode.js').ModeFacts} */
+export const burr = {
+    name: 'burr',
+    kind: 'carver',
+    title: 'Burr',
+    tip: 'drag to remove tissue',
+    hint: 'Drag to remove tissue. The wheel goes deeper.',
+    icon: '<path d="M20.5 3.5 13 11"/><circle cx="9" cy="15" r="5"/><path d="M5.8 11.2 12.5 18.5M4.2 14.5l5.5 5.400M9 10l4.8 5"/>',
+    sliders: [
+        { id: 'burr', label: 'Radius', says: 'Radius of the burr', least: 0.7, most: 0.12 },
+        { id: 'bite', label: 'Depth', says: 'Depth of the burr', least: 0.1, most: 0.15 },
+    ],
+    suitable: (element, diagonal) => {
+        const burr = Math.max(1.5 * element, 0.02 * diagonal);
+        return { burr, bite: 0.6 * burr };
+    },
+    make: (bench) => new Ball(bench, 'carver', 'burr', 'bite'),
+};

@@ -65,3 +65,18 @@ export class Grasper extends Mode {
         return hit ? { tool: this.#definition(), pose: poseOf(hit.point, aim.into(hit, x, y)) } : null;
     }
 }
+
+/** @type {import('./mode.js').ModeFacts} */
+export const grasper = {
+    name: 'grasper',
+    kind: 'grasper',
+    title: 'Grasper',
+    tip: 'drag to hold and pull',
+    hint: 'Press to close the jaws, drag to pull. The wheel moves them along the view.',
+    icon: '<path d="M21 3 14.5 9.5"/><circle cx="13.5" cy="10.5" r="1.5"/><path d="M12 10C7.5 9.5 4 12 3.5 17.500M14 12c.5 4.5-2 8-7.5 8.5"/>',
+    sliders: [
+        { id: 'grip', label: 'Radius', says: 'Radius of the grip', least: 0.5, most: 0.12 },
+    ],
+    suitable: (element, diagonal) => ({ grip: Math.max(1.5 * element, 0.02 * diagonal) }),
+    make: (bench) => new Grasper(bench),
+};

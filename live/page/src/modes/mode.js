@@ -13,6 +13,29 @@
  * @property {() => void} changed the settings or the marks changed
  */
 
+/**
+ * A slider goes in even ratios from `least`, in element sizes, to `most`, in diagonals of the body.
+ * @typedef {{id: string, label: string, says: string, least: number, most: number}} Slider
+ */
+
+/**
+ * What the page shows of a mode, beside the picture. modes/index.js lists the modes.
+ * @typedef {Object} ModeFacts
+ * @property {string} name
+ * @property {string} kind of tool that it takes; empty without
+ * @property {string} title on its button
+ * @property {string} tip what to do, on its button
+ * @property {string} hint what to do, in the settings
+ * @property {string} icon lines of an SVG of 24 x 24
+ * @property {Slider[]} [sliders] of the settings with their names
+ * @property {(element: number, diagonal: number, touches: boolean) => Record<string, number|boolean>} [suitable]
+ *     settings to begin with: lengths that suit a mean edge and a body, and whether tools touch tissue
+ * @property {(bench: Bench) => Mode} [make]
+ * @property {(tool: import('../types.js').ToolDefinition, brush: import('../tools_view.js').Brush) => void} [draw]
+ * @property {(state: import('../types.js').ToolState) => import('../types.js').ToolDefinition} [shown]
+ *     what is drawn of a tool in its present state
+ */
+
 export class Mode {
     /** True if the wheel is the mode's even without a drag. */
     wheelsWhenIdle = false;

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 import { Vector3 } from 'three';
 import { poseOf } from '../hand.js';
-import { toughness } from '../settings.js';
 import { Mode } from './mode.js';
 
+/** Toughness of soft tissue that the blade feels, J/m^2. */
+const toughness = 160;
 /** Part of a new direction that a sample of the pointer takes over. */
 const follow = 0.2;
 
@@ -101,3 +102,18 @@ export class Scalpel extends Mode {
         return { tool: this.#definition(), pose: poseOf(hit.point, into) };
     }
 }
+
+/** @type {import('./mode.js').ModeFacts} */
+export const scalpel = {
+    name: 'scalpel',
+    kind: 'blade',
+    title: 'Scalpel',
+    tip: 'drag to cut',
+    hint: 'Drag to cut. The wheel moves the blade in and out. A stroke over the edge parts the body.',
+    icon: '<path d="m20.5 3.5-7.8 7.800M21 6.500l-7 7-2.8-2.6"/><path d="m11.2 10.9 2.8 2.600c-1.5 3.5-5 6-10.5 7 1-4.5 4-8 7.7-9.600z"/>',
+    sliders: [
+        { id: 'depth', label: 'Depth', says: 'Depth of the cut', least: 0.3, most: 0.35 },
+    ],
+    suitable: (element, _diagonal, touches) => ({ depth: 1.5 * element, through: false, resistance: touches }),
+    make: (bench) => new Scalpel(bench),
+};

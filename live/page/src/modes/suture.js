@@ -71,3 +71,15 @@ export class Suture extends Mode {
         return this.points.length === 0 && this.tighten(0.95 ** notches);
     }
 }
+
+/** @type {import('./mode.js').ModeFacts} */
+export const suture = {
+    name: 'suture',
+    kind: 'suture',
+    title: 'Suture',
+    tip: 'click points, Enter ties',
+    hint: 'Click points; Enter or a double click ties. Then the wheel tightens.',
+    icon: '<path d="M4 15C6 6 15 3 20.5 8"/><path d="M4 15c-1 4 3 6 6 4s4-5 7-4 3 4 1.5 6"/><path d="m20.5 8-1-3.5M20.5 8 17 8.3"/>',
+    suitable: () => ({ stiffness: 200 }),
+    make: (bench) => new Suture(bench),
+};
