@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "incise/topology/cell_kind.h"
@@ -14,13 +15,16 @@ namespace incise::python {
 
 namespace py = pybind11;
 
-/// Rows of whole numbers by kind of cell.
-class CellArrays {
+/// Rows of numbers by kind of cell.
+template <class Number>
+class CellRows {
   public:
-    /// @param for_corners  rows have a number for each corner; if false, one number
-    explicit CellArrays(bool for_corners) : for_corners_(for_corners) {}
+    /// @param for_corners  a row has a number for each corner of the cell
+    /// @param shape        otherwise the shape of a row; empty for one number
+    explicit CellRows(bool for_corners, std::vector<py::ssize_t> shape = {})
+        : for_corners_(for_corners), shape_(std::move(shape)) {}
 
-    std::vector<std::int64_t>& of(topology::CellKind kind) {
+    std::vector<Number>& of(topology::CellKind kind) {
         return values_[static_cast<std::size_t>(kind)];
     }
 
@@ -32,10 +36,7 @@ class CellArrays {
         for (std::size_t k = 0; k < values_.size(); ++k) {
             if (values_[k].empty()) continue;
             const topology::CellTraits& traits = topology::cell_traits[k];
-            const auto width = for_corners_ ? py::ssize_t{traits.num_corners} : py::ssize_t{1};
-            const auto rows = static_cast<py::ssize_t>(values_[k].size()) / width;
-            py::array_t<std::int64_t> array(for_corners_ ? std::vector<py::ssize_t>{rows, width}
-                                                         : std::vector<py::ssize_t>{rows});
+            py::array_t<Number> array(shape_of(values_[k].size(), traits.num_corners));
             std::copy(values_[k].begin(), values_[k].end(), array.mutable_data());
             if (are_frozen) array.attr("setflags")(py::arg("write") = false);
             by_kind[traits.name] = array;
@@ -43,13 +44,25 @@ class CellArrays {
         }
         if (by_kind.size() == 1) return last;
         if (by_kind.size() > 1) return by_kind;
-        return py::array_t<std::int64_t>(for_corners_ ? std::vector<py::ssize_t>{0, 4}
-                                                      : std::vector<py::ssize_t>{0});
+        return py::array_t<Number>(shape_of(0, 4));
     }
 
   private:
+    std::vector<py::ssize_t> shape_of(std::size_t num_values, int num_corners) const {
+        std::vector<py::ssize_t> shape{0};
+        if (for_corners_) shape.push_back(num_corners);
+        shape.insert(shape.end(), shape_.begin(), shape_.end());
+        py::ssize_t width = 1;
+        for (std::size_t i = 1; i < shape.size(); ++i) width *= shape[i];
+        shape[0] = static_cast<py::ssize_t>(num_values) / width;
+        return shape;
+    }
+
     bool for_corners_;
-    std::array<std::vector<std::int64_t>, topology::num_cell_kinds> values_;
+    std::vector<py::ssize_t> shape_;
+    std::array<std::vector<Number>, topology::num_cell_kinds> values_;
 };
+
+using CellArrays = CellRows<std::int64_t>;
 
 }  // namespace incise::python

@@ -253,6 +253,15 @@ Raises InputError with all faults of scenario and mesh. What is unusual becomes 
         .def_property_readonly(
             "regions", &regions,
             "The region of each element, int64, shape (M,), read-only; a dict if cells is one.")
+        .def_property_readonly(
+            "stress", &stress,
+            "The Cauchy stress in each element, Pa: float64, shape (M, 3, 3), a copy; a dict if\n"
+            "cells is one. Parts of a cut element have the stress of their fragment. Springs have\n"
+            "a mean. It is that of the elastic forces, without damping.")
+        .def_property_readonly(
+            "volume_ratio", &volume_ratio,
+            "The volume of each element over its volume at rest: float64, shape (M,), a copy; a\n"
+            "dict if cells is one. It is that of the fragment that carries the element.")
         .def_property_readonly("surface", &surface,
                                "The surface of the body, a Surface. The same object until the "
                                "topology_version changes.")

@@ -31,7 +31,7 @@ struct Surface {
 
 struct Physics {
     py::array_t<double> rest_positions, positions, velocities, masses;
-    py::object cells, fragments;
+    py::object cells, volume_shares, fragments;
 };
 
 /// Arrays that show the memory of a world.
@@ -182,6 +182,34 @@ py::object surface(const World& world) {
     });
 }
 
+namespace {
+
+/// Returns a result of each element as rows. `append` appends the numbers of one.
+py::object results(const World& world, std::vector<py::ssize_t> shape,
+                   void (*append)(const physics::ElementResult&, std::vector<double>&)) {
+    const sim::World& body = driver_of(world).world();
+    CellRows<double> rows(false, std::move(shape));
+    const std::vector<physics::ElementResult> all = body.cell_results();
+    auto result = all.begin();
+    for (const CellId e : body.mesh().elements()) append(*result++, rows.of(body.mesh().kind(e)));
+    return rows.object(false);
+}
+
+}  // namespace
+
+py::object stress(const World& world) {
+    return results(world, {3, 3}, [](const physics::ElementResult& r, std::vector<double>& row) {
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) row.push_back(r.cauchy_stress(i, j));
+    });
+}
+
+py::object volume_ratio(const World& world) {
+    return results(world, {}, [](const physics::ElementResult& r, std::vector<double>& row) {
+        row.push_back(r.volume_ratio);
+    });
+}
+
 py::object physics(const World& world) {
     const physics::BodyArrays arrays = driver_of(world).world().body_arrays();
     const topology::MeshData& mesh = arrays.mesh;
@@ -191,9 +219,11 @@ py::object physics(const World& world) {
         matrix_of(arrays.velocities),
         py::array_t<double>(static_cast<py::ssize_t>(arrays.masses.size()), arrays.masses.data()),
         {},
+        {},
         {}};
     // Fragments are counted through the arrays of all kinds.
     CellArrays cells(true), fragments(false);
+    CellRows<double> shares(false);
     std::array<std::int64_t, topology::num_cell_kinds + 1> first{};
     for (const topology::CellKind kind : mesh.kinds) ++first[static_cast<std::size_t>(kind) + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
@@ -201,6 +231,7 @@ py::object physics(const World& world) {
     for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
         auto& rows = cells.of(mesh.kinds[c]);
         rows.insert(rows.end(), mesh.cell(c).begin(), mesh.cell(c).end());
+        shares.of(mesh.kinds[c]).push_back(arrays.volume_shares[c]);
         number.push_back(first[static_cast<std::size_t>(mesh.kinds[c])]++);
     }
     const topology::Mesh& material = world->driver.world().mesh();
@@ -208,6 +239,7 @@ py::object physics(const World& world) {
     for (const CellId e : material.elements())
         fragments.of(material.kind(e)).push_back(number[static_cast<std::size_t>(*row++)]);
     made.cells = cells.object(true);
+    made.volume_shares = shares.object(true);
     made.fragments = fragments.object(true);
     for (auto* array : {&made.rest_positions, &made.positions, &made.velocities, &made.masses})
         frozen(*array);
@@ -259,6 +291,10 @@ The arrays are read-only copies: they are valid for ever, and show the world as 
             "The fragments as rows of positions, shape (F, 4) or (F, 8); a dict of such arrays by\n"
             "kind in a mixed mesh. A fragment has the corners of the whole element that it is a\n"
             "part of, so that those of a cut element overlap.")
+        .def_property_readonly(
+            "volume_shares", held(&Physics::volume_shares),
+            "The volume of material that each fragment carries over that of its whole element,\n"
+            "shape (F,); a dict by kind if cells is one. Above 0; 1 before any cut.")
         .def_property_readonly(
             "fragments", held(&Physics::fragments),
             "The row of cells that carries each element of World.cells, shape (M,). In a mixed "

@@ -24,6 +24,10 @@ py::object cells(const World& world);
 py::object regions(const World& world);
 py::object surface(const World& world);
 
+/// Returns the Cauchy stress of each element, Pa, shape (M, 3, 3), and its volume over that at
+/// rest, shape (M,); dicts of them by kind in a mixed mesh.
+py::object stress(const World& world);
+py::object volume_ratio(const World& world);
 /// Returns an incise.Physics.
 py::object physics(const World& world);
 /// Returns an incise.View.

@@ -115,6 +115,7 @@ void FrameBuilder::add_physics(const physics::Model& model) {
     data.push_back({"physics_connectivity", 1, std::move(arrays.mesh.corners)});
     data.push_back(field<std::int64_t>("physics_offsets", 1, arrays.mesh.offsets,
                                        [](std::size_t offset) { return offset; }));
+    data.push_back({"physics_volume_share", 1, std::move(arrays.volume_shares)});
     frame_.cell_fields.push_back({"fragment", 1, std::move(arrays.cell_of_element)});
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "incise/base/number_format.h"
+#include "incise/physics/body/element_snapshot.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
 
@@ -205,6 +206,12 @@ std::span<const Vec3> World::positions() const { return parts_->model.mesh_posit
 std::span<const Vec3> World::velocities() const { return parts_->model.mesh_velocities(); }
 std::vector<double> World::masses() const { return parts_->model.mesh_masses(); }
 physics::BodyArrays World::body_arrays() const { return physics::body_arrays(parts_->model); }
+std::vector<physics::ElementResult> World::cell_results() const {
+    std::vector<ElementId> elements;
+    for (const CellId e : mesh().elements())
+        elements.push_back(model().fragments().fragment_of_cell(e));
+    return physics::ElementSnapshot(model()).results(elements);
+}
 const physics::Model& World::model() const { return parts_->model; }
 const cutting::Cutter& World::cutter() const { return parts_->cutter; }
 std::optional<std::vector<std::pair<VertexId, Vec3>>> World::contact_forces() const {

@@ -19,6 +19,7 @@
 #include "incise/physics/body/body_arrays.h"
 #include "incise/physics/body/force_term.h"
 #include "incise/physics/body/model.h"
+#include "incise/physics/elements/element_result.h"
 #include "incise/sim/handles.h"
 #include "incise/sim/ledger.h"
 #include "incise/topology/boundary_surface.h"
@@ -198,13 +199,15 @@ class World {
     ///                     which the blade moved. If null, the direction is that of the last step
     ///                     in which the blade moved.
     void withdraw_tool(ToolId tool, const Pose* pose_before = nullptr);
-    /// Closes the jaws of a grasper: they take hold of the surface that is in them at the present
-    /// pose of the tool, and carry it from now on. Returns how many points they hold.
-    /// Throws InputError if the tool is no grasper, or is not there.
+    /// Closes a tool. The jaws of a grasper take hold of the surface that is in them at the present
+    /// pose of the tool, and carry it from now on; returns how many points they hold. Scissors
+    /// begin to close in the next step, and hold nothing.
+    /// Throws InputError if the tool has nothing to close, or is not there.
     std::size_t close_tool(ToolId tool);
-    /// Opens the jaws: the tissue keeps its velocity. Throws as close_tool() does.
+    /// Opens a tool. Tissue that jaws have held keeps its velocity. Throws as close_tool() does.
     void open_tool(ToolId tool);
-    /// True from close_tool() to open_tool(), also if all tissue has slipped out of the jaws.
+    /// True from close_tool() to open_tool(), also while scissors are still closing, and if all
+    /// tissue has slipped out of jaws. False for tools that do not close.
     bool is_tool_closed(ToolId tool) const;
     /// Returns how many points a grasper holds: 0 if it is open, or if all have slipped out.
     std::size_t num_held(ToolId tool) const;
@@ -300,6 +303,10 @@ class World {
     /// Returns the nodes that carry momentum and kinetic energy, with their positions, velocities,
     /// masses and elements, as copies. Cost: O(n).
     physics::BodyArrays body_arrays() const;
+    /// Returns stress, energy and change of volume of the cells of mesh(), in ascending order of
+    /// their ids, at the last step. Cells that one fragment carries have the same stress and volume
+    /// ratio, and the energy and volume of the whole fragment. Cost: O(n).
+    std::vector<physics::ElementResult> cell_results() const;
     /// Returns the model. Its arrays are by node of its fragments: after a cut, these nodes have
     /// other ids than those of the mesh.
     const physics::Model& model() const;

@@ -24,6 +24,9 @@ struct BodyArrays {
     std::vector<Vec3> rest_positions;  ///< m
     std::vector<Vec3> velocities;      ///< m/s
     std::vector<double> masses;        ///< kg
+    /// By cell of `mesh`: the volume of the material that the fragment carries over that of its
+    /// carrier, see FragmentMesh::share().
+    std::vector<double> volume_shares;
     /// By living element of Model::mesh(), in ascending order: the cell of `mesh` that carries it.
     std::vector<std::int64_t> cell_of_element;
 };

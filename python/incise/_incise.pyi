@@ -12,6 +12,7 @@ _Path = Union[str, os.PathLike[str]]
 _Floats = npt.NDArray[np.float64]
 _Integers = npt.NDArray[np.int64]
 _ByKind = Union[_Integers, dict[str, _Integers]]
+_NumbersByKind = Union[_Floats, dict[str, _Floats]]
 _Table = Mapping[str, Any]
 
 __version__: str
@@ -165,6 +166,8 @@ class Physics:
     @property
     def cells(self) -> _ByKind: ...
     @property
+    def volume_shares(self) -> _NumbersByKind: ...
+    @property
     def fragments(self) -> _ByKind: ...
 
 class Surface:
@@ -256,6 +259,10 @@ class World:
     def cells(self) -> _ByKind: ...
     @property
     def regions(self) -> _ByKind: ...
+    @property
+    def stress(self) -> _NumbersByKind: ...
+    @property
+    def volume_ratio(self) -> _NumbersByKind: ...
     @property
     def surface(self) -> Surface: ...
     @property

@@ -132,6 +132,61 @@ class Arrays(unittest.TestCase):
             with self.assertRaises(ValueError):
                 nodes.masses[0] = 1.0
 
+    def test_volume_shares_are_those_of_the_material(self) -> None:
+        body = support.world()
+        np.testing.assert_array_equal(body.physics.volume_shares, 1.0)
+        support.cut_through(body, 0.0713)
+        nodes = body.physics
+        whole = nodes.rest_positions[nodes.cells]
+        edges = whole[:, 1:] - whole[:, :1]
+        carried = nodes.volume_shares * np.abs(np.linalg.det(edges)) / 6
+        material = body.rest_positions[body.cells]
+        volumes = np.abs(np.linalg.det(material[:, 1:] - material[:, :1])) / 6
+        np.testing.assert_allclose(carried, np.bincount(nodes.fragments, volumes), rtol=1e-9)
+        self.assertTrue((nodes.volume_shares < 1.0).any())
+
+    def test_stress_and_volume_ratio_are_those_of_the_strain(self) -> None:
+        """Of a block that is drawn out, against the law in each tetrahedron."""
+        young, poisson, factor = 1e4, 0.4, 1.02
+        lame = young * poisson / ((1 + poisson) * (1 - 2 * poisson))
+        shear = young / (2 * (1 + poisson))
+        body = support.world()
+        np.testing.assert_allclose(body.stress, 0.0, atol=1e-9 * young)
+        np.testing.assert_allclose(body.volume_ratio, 1.0, rtol=1e-12)
+        stretched = support.world(
+            materials=[{**support.MATERIAL, "law": "saint-venant-kirchhoff"}],
+            damping=None, dynamics={"mode": "static"}, constraints=[
+                support.CLAMP,
+                {"name": "end", "where": {"box": {"min": [0.119, -1, -1], "max": [1, 1, 1]}},
+                 "move": [{"time": 0, "by": [0, 0, 0]},
+                          {"time": 1, "by": [0.12 * (factor - 1), 0, 0]}]}])
+        stretched.run_until(1.0)
+        stress, ratio = stretched.stress, stretched.volume_ratio
+        self.assertEqual(stress.shape, (stretched.num_cells, 3, 3))
+        np.testing.assert_allclose(stress, stress.transpose(0, 2, 1), atol=1e-9 * young)
+        # From the deformation gradient of each tetrahedron.
+        rest, now = stretched.rest_positions[stretched.cells], stretched.positions[stretched.cells]
+        gradient = (np.linalg.inv(rest[:, 1:] - rest[:, :1]) @ (now[:, 1:] - now[:, :1]))
+        gradient = gradient.transpose(0, 2, 1)
+        det = np.linalg.det(gradient)
+        np.testing.assert_allclose(ratio, det, rtol=1e-10)
+        strain = 0.5 * (gradient.transpose(0, 2, 1) @ gradient - np.eye(3))
+        second = lame * np.trace(strain, axis1=1, axis2=2)[:, None, None] * np.eye(3) \
+            + 2 * shear * strain
+        cauchy = gradient @ second @ gradient.transpose(0, 2, 1) / det[:, None, None]
+        np.testing.assert_allclose(stress, cauchy, atol=1e-9 * young)
+        mixed = support.world(mesh=incise.Mesh(
+            [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1],
+             [3, 0, 0], [4, 0, 0], [3, 1, 0], [3, 0, 1]],
+            {"hexahedron": [[0, 1, 2, 3, 4, 5, 6, 7]], "tetrahedron": [[8, 9, 10, 11]]},
+            {"hexahedron": [1], "tetrahedron": [0]}),
+            materials=[{**support.MATERIAL, "regions": [0]},
+                       {**support.HEX_MATERIAL, "regions": [1]}], constraints=[])
+        self.assertEqual({kind: rows.shape for kind, rows in mixed.stress.items()},
+                         {"tetrahedron": (1, 3, 3), "hexahedron": (1, 3, 3)})
+        self.assertEqual({kind: rows.tolist() for kind, rows in mixed.physics.volume_shares.items()},
+                         {"tetrahedron": [1.0], "hexahedron": [1.0]})
+
     def test_physics_counts_fragments_through_all_kinds(self) -> None:
         points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1],
                   [0, 1, 1], [3, 0, 0], [4, 0, 0], [3, 1, 0], [3, 0, 1]]
