@@ -70,8 +70,8 @@ Json json_of_order(const MoveTool& order) {
     return json;
 }
 Json json_of_order(const WithdrawTool& order) { return named("withdraw", order.name); }
-Json json_of_order(const CloseGrasper& order) { return named("close", order.name); }
-Json json_of_order(const OpenGrasper& order) { return named("open", order.name); }
+Json json_of_order(const CloseTool& order) { return named("close", order.name); }
+Json json_of_order(const OpenTool& order) { return named("open", order.name); }
 Json json_of_order(const DrawSuture& order) {
     Json json = named("draw", order.name);
     json["length"] = order.length;
@@ -186,8 +186,8 @@ Order order_of(const Json& json) {
         return AddTool{text_in(json, "add"), value_of(member(json, "tool")), pose_in(json)};
     if (is("move")) return MoveTool{text_in(json, "move"), pose_in(json)};
     if (is("withdraw")) return WithdrawTool{text_in(json, "withdraw")};
-    if (is("close")) return CloseGrasper{text_in(json, "close")};
-    if (is("open")) return OpenGrasper{text_in(json, "open")};
+    if (is("close")) return CloseTool{text_in(json, "close")};
+    if (is("open")) return OpenTool{text_in(json, "open")};
     if (is("draw")) return DrawSuture{text_in(json, "draw"), number_in(json, "length")};
     if (is("untie")) return UntieSuture{text_in(json, "untie")};
     throw InputError("this is no order: must be add, move, withdraw, close, open, draw or untie");

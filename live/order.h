@@ -27,10 +27,10 @@ struct MoveTool {
 struct WithdrawTool {
     std::string name;
 };
-struct CloseGrasper {
+struct CloseTool {
     std::string name;
 };
-struct OpenGrasper {
+struct OpenTool {
     std::string name;
 };
 /// Draws a thread: its length without tension at the end of the next tick, m.
@@ -42,8 +42,8 @@ struct UntieSuture {
     std::string name;
 };
 
-using Order = std::variant<AddTool, MoveTool, WithdrawTool, CloseGrasper, OpenGrasper, DrawSuture,
-                           UntieSuture>;
+using Order =
+    std::variant<AddTool, MoveTool, WithdrawTool, CloseTool, OpenTool, DrawSuture, UntieSuture>;
 
 /// Returns an order as one JSON object, such as {"move":"blade_1","at":[0,0,0],
 /// "rotation":[0,0,0,1]}. Numbers keep all their bits.

@@ -12,6 +12,7 @@
 #include "incise/base/number_format.h"
 #include "incise/cutting/tools/probe_shape.h"
 #include "incise/scenario/body.h"
+#include "incise/scenario/tools/tool_kind.h"
 #include "incise/topology/mesh_metrics.h"
 
 namespace incise::live {
@@ -91,18 +92,17 @@ void Session::require_within_reach(const Pose& pose) const {
             "the tool would be more than 1000 times the size of the body away from it");
 }
 
+void Session::require_sensible(double length) const {
+    if (!(std::abs(length) <= most_bodies * box_.diagonal().norm()))
+        throw InputError("the tool is more than 1000 times as large as the body, or as far away");
+}
+
 void Session::require_sensible(const scenario::Value& value) const {
-    const auto require = [&](double number) {
-        if (!(std::abs(number) <= most_bodies * box_.diagonal().norm()))
-            throw InputError(
-                "the tool is more than 1000 times as large as the body, or as far away");
-    };
-    if (const auto* number = value.get<double>()) require(*number);
-    if (const auto* number = value.get<std::int64_t>()) require(static_cast<double>(*number));
+    if (const auto* number = value.get<double>()) require_sensible(*number);
+    if (const auto* number = value.get<std::int64_t>())
+        require_sensible(static_cast<double>(*number));
     if (const auto* array = value.get<scenario::Array>())
         for (const scenario::Value& item : *array) require_sensible(item);
-    if (const auto* table = value.get<scenario::Table>())
-        for (const scenario::Entry& entry : *table) require_sensible(entry.value);
 }
 
 /// Tools that touch pass through nothing, and the world divides a step for that: more than 1000
@@ -137,11 +137,11 @@ std::vector<std::string> Session::execute(const Order& order) {
                 if (is_suture(withdrawn))
                     throw InputError("suture '" + it.name + "' is untied, not withdrawn");
                 withdrawn.is_to_be_withdrawn = true;
-            } else if constexpr (std::is_same_v<T, CloseGrasper>) {
+            } else if constexpr (std::is_same_v<T, CloseTool>) {
                 const sim::ToolId id = tool_in_hand(it.name).id;
                 if (world.close_tool(id) == 0 && cutting::traits_of(world.tool(id).shape).holds)
                     warnings.push_back("grasper '" + it.name + "' closes on nothing");
-            } else if constexpr (std::is_same_v<T, OpenGrasper>) {
+            } else if constexpr (std::is_same_v<T, OpenTool>) {
                 world.open_tool(tool_in_hand(it.name).id);
             } else if constexpr (std::is_same_v<T, DrawSuture>) {
                 LedTool& thread = tool(it.name);
@@ -164,11 +164,15 @@ scenario::HeldTool Session::checked(const AddTool& order) const {
         throw InputError("there is a tool '" + order.name + "' already");
     require_within_reach(order.pose);
     if (const auto* definition = order.definition.get<scenario::Table>())
-        for (const char* lengths : {"edge", "shape", "points"})
-            if (const scenario::Value* value = scenario::find(*definition, lengths))
-                require_sensible(*value);
+        if (const scenario::Value* points = scenario::find(*definition, "points"))
+            require_sensible(*points);
     scenario::HeldTool built = scenario::build_held_tool(
         order.definition, simulation_.scenario().folder, simulation_.mesh(), why_no_contact_);
+    if (const auto extent = scenario::kind_of(built.shape).extent(built.shape)) {
+        require_sensible(extent->radius);
+        for (const Vec3& x : extent->points)
+            for (int i = 0; i < 3; ++i) require_sensible(x[i]);
+    }
     if (cutting::traits_of(built.shape).is_at_once)
         throw InputError("a cut is not led by hand: take a blade");
     return built;

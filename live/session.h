@@ -106,6 +106,7 @@ class Session {
     std::vector<std::string> add(const AddTool& order);
     void move(const MoveTool& order);
     void require_within_reach(const Pose& pose) const;
+    void require_sensible(double length) const;
     void require_sensible(const scenario::Value& definition) const;
     LedTool& tool(const std::string& name);
     LedTool& tool_in_hand(const std::string& name);

@@ -35,7 +35,7 @@ void ScriptedTools::move(sim::World& world, double from, double to,
     }
 }
 
-/// Closes or opens the jaws of a grasper at the beginning of a step.
+/// Closes or opens a tool at the beginning of a step.
 void ScriptedTools::move_jaws(sim::World& world, sim::ToolId tool, double time,
                               std::vector<std::string>& warnings) {
     const auto& [path, close, open, over, length] = scripts_[tool.index];

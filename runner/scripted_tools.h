@@ -38,7 +38,7 @@ class ScriptedTools {
     /// What a tool does when.
     struct Script {
         scenario::ToolPath path;
-        std::optional<double> close, open;  // of a grasper, s
+        std::optional<double> close, open;  // of a tool that closes, s
         double over;                        // of a suture, s
         std::optional<double> length;       // of a suture, m
     };

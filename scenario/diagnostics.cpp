@@ -93,7 +93,7 @@ constexpr Synonym synonyms[] = {
     // tools
     {"scalpel", "blade"},
     {"knife", "blade"},
-    {"scissors", "blade"},
+    {"shears", "scissors"},
     {"wire", "blade"},
     {"stitch", "suture"},
     {"thread", "suture"},

@@ -151,7 +151,7 @@ struct SurfaceFile {
 };
 
 /// A [[tool]] or [[obstacle]] section. The tool is present from the first to the last key of its
-/// path. A tool without a pose has one key: the time of a cut, or at which a suture is tied.
+/// path. A tool that no pose leads has one key: the time of a cut, or at which a suture is tied.
 struct ToolSpec {
     std::string name;
     cutting::ToolShape shape = {};

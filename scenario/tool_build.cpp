@@ -2,7 +2,6 @@
 #include "incise/scenario/tool_build.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <sstream>
 #include <utility>
@@ -46,12 +45,12 @@ CutMode usual_mode(const topology::Mesh& mesh) {
 }
 
 ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
-    if (spec.has_usual_mode) {
-        auto& blade = std::get<cutting::Blade>(spec.shape);
-        blade.mode = usual_mode(mesh);
+    // A tool of an unknown kind has been read as several kinds.
+    if (auto* blade = std::get_if<cutting::Blade>(&spec.shape); blade && spec.has_usual_mode) {
+        blade->mode = usual_mode(mesh);
         spec.has_usual_mode = false;
         // A mode that was chosen has been judged before.
-        if (blade.toughness > 0.0 && blade.mode == CutMode::separate)
+        if (blade->toughness > 0.0 && blade->mode == CutMode::separate)
             throw InputError("tool '" + spec.name +
                              "' has a toughness, and the mesh has elements that are no tetrahedra: "
                              "where it opens faces, its force is not known; leave toughness out");
@@ -69,9 +68,9 @@ ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings
     if (spec.surface) {
         const std::string file_name = spec.surface->path.string();
         io::SurfaceFile file = io::read_surface(spec.surface->path);
-        for (Vec3& x : file.surface.points) x *= spec.surface->scale;
         try {
-            kind_of(shape).take_surface(std::move(file.surface), shape, file.warnings);
+            kind_of(shape).take_surface(std::move(file.surface), spec.surface->scale, shape,
+                                        file.warnings);
         } catch (const InputError& error) {
             throw InputError(file_name + ": " + error.what());
         }
@@ -101,25 +100,8 @@ void for_each_surface(const ScriptedTool& tool, double end_time,
     const auto& keys = tool.path.keys();
     if (keys.empty() || keys.front().time > end_time || !divides(tool.shape)) return;
     if (tool.surface) return look(*tool.surface);
-    const auto* blade = std::get_if<cutting::Blade>(&tool.shape);
-    if (!blade) return;
-    // Where the edge turns, its points move on arcs. Short parts approximate these.
-    constexpr double longest_turn = 0.05;
-    for (std::size_t key = 1; key < keys.size(); ++key) {
-        const auto &from = keys[key - 1], &to = keys[key];
-        if (from.time >= end_time) return;
-        const double turn = from.value.rotation.angularDistance(to.value.rotation);
-        const int num_parts = std::max(1, static_cast<int>(std::ceil(turn / longest_turn)));
-        const auto edge = [&](int part) {
-            const double at =
-                part == num_parts ? to.time : from.time + part * (to.time - from.time) / num_parts;
-            std::vector<Vec3> points;
-            cutting::place_edge(*blade, tool.path.pose(std::min(at, end_time)), points);
-            return points;
-        };
-        for (int part = 0; part < num_parts; ++part)
-            look(cutting::SweptEdge(edge(part), edge(part + 1)));
-    }
+    const std::vector<std::vector<Vec3>> edges = kind_of(tool.shape).edges(tool, end_time);
+    for (std::size_t i = 1; i < edges.size(); ++i) look(cutting::SweptEdge(edges[i - 1], edges[i]));
 }
 
 }  // namespace

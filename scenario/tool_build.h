@@ -54,7 +54,7 @@ void require_divisible(const ScriptedTool& tool, const topology::Mesh& mesh, dou
 /// @pre  require_divisible() throws nothing
 std::optional<std::string> warning_of_near_misses(const ScriptedTool& tool,
                                                   const topology::Mesh& mesh, double end_time);
-/// True if the tool divides elements: it is a cut, or a blade with the mode "split".
+/// True if the tool divides elements: it cuts, and is no carver and no blade with mode "separate".
 bool divides(const cutting::ToolShape& shape);
 /// Returns advice for messages: how to change the tool if its edits make the stable step too short.
 std::string for_longer_steps(const cutting::ToolShape& shape);

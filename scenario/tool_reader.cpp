@@ -65,18 +65,22 @@ void refuse_times(const TableReader& tool) {
                        "belongs to a tool of a scenario: this one is led by hand; leave it out");
 }
 
-/// Reports keys that a tool of this kind needs but does not have, and keys of other kinds.
-void check_keys(const TableReader& tool, const ToolKind& kind, Led led) {
+bool has_key(const ToolKind& kind, Keys key) {
+    return std::ranges::find(kind.keys(), key, &ToolKey::name) != kind.keys().end();
+}
+
+/// Reports keys that a tool of this kind needs but does not have, and keys of other kinds. Returns
+/// false if it is not known what the tool is.
+bool check_keys(const TableReader& tool, const ToolKind& kind, Led led) {
     const bool has_times = led == Led::by_path;
     if (!has_times) refuse_times(tool);
     for (const ToolKey& key : kind.keys())
         if (!key.hint.empty() && (has_times || !key.is_time)) tool.require(key.name, key.hint);
-    kind.check_keys(tool);
+    const bool has_all = kind.has_all(tool);
     std::vector<Keys> judged;
     for (const ToolKind* other : tool_kinds())
         for (const ToolKey& key : other->keys()) {
-            const bool is_own =
-                std::ranges::find(kind.keys(), key.name, &ToolKey::name) != kind.keys().end();
+            const bool is_own = has_key(kind, key.name);
             const bool is_known = std::ranges::find(judged, key.name) != judged.end();
             if (is_own || is_known || !tool.has(key.name) || (key.is_time && !has_times)) continue;
             judged.push_back(key.name);
@@ -85,7 +89,7 @@ void check_keys(const TableReader& tool, const ToolKind& kind, Led led) {
                                      ? "belongs to " + owners_of(key.name) + ": leave it out"
                                      : advice);
         }
-    if (!has_times) return;
+    if (!has_times) return has_all;
     if (kind.has_path()) {
         if (tool.has("time")) tool.error("time", "belongs to a cut or a suture: leave it out");
         tool.require("path",
@@ -94,6 +98,7 @@ void check_keys(const TableReader& tool, const ToolKind& kind, Led led) {
         if (tool.has("path")) tool.error("path", std::string(kind.motion().why_no_path));
         tool.require("time", kind.motion().time_hint);
     }
+    return has_all;
 }
 
 /// True if nothing is wrong with what says where the tool is.
@@ -122,16 +127,15 @@ void check_contact(const TableReader& tool, const ToolKind& kind,
     if (why_no_contact.empty()) return;
     if (kind.traits().touches)
         tool.error("kind", in_quotes(kind.name()) + " touches tissue, but " + why_no_contact);
-    else if (tool.has("toughness"))
+    else if (has_key(kind, "toughness") && tool.has("toughness"))
         tool.error("toughness",
                    "gives a force of cutting, which needs contact, but " + why_no_contact);
 }
 
-/// Reads a tool without a known kind, as far as its keys suggest one or several.
-void read_as_suggested(const TableReader& tool, const std::filesystem::path& folder,
-                       ToolSpec& spec) {
+/// Reads a tool without a known kind.
+void read_unknown(const TableReader& tool, const std::filesystem::path& folder, ToolSpec& spec) {
     for (const ToolKind* kind : tool_kinds())
-        if (kind->is_suggested_by(tool)) kind->read(tool, folder, spec);
+        if (kind->reads_unknown_kinds()) kind->read(tool, folder, spec);
 }
 
 /// Reads the kind of a tool; null if it is not known.
@@ -170,12 +174,12 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
         const std::string usual_name =
             kind ? std::string(kind->name()) + "_" + std::to_string(++counts[kind]) : "";
         if (kind || tool.has("name")) spec.name = read_name(tool, usual_name, names);
-        if (kind) check_keys(tool, *kind, Led::by_path);
+        const bool has_all = kind && check_keys(tool, *kind, Led::by_path);
         if (kind) check_contact(tool, *kind, why_no_contact);
         if (kind)
             kind->read(tool, folder, spec);
         else
-            read_as_suggested(tool, folder, spec);
+            read_unknown(tool, folder, spec);
         if (!kind || !kind->has_path()) {
             const double time = tool.number("time", 0.0, limits::non_negative);
             if (tool.is_sound("time")) spec.path = {{time, {}}};
@@ -185,7 +189,7 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
         // Without a known kind, only the file of a surface can be checked further.
         if (!kind && !spec.surface) continue;
         if (kind) check_path(tool, *kind, spec, end_time);
-        if (!kind || !knows_where(tool, *kind)) spec.path.clear();
+        if (!has_all || !knows_where(tool, *kind)) spec.path.clear();
         specs.push_back(std::move(spec));
     }
     int count = 0;

@@ -91,8 +91,8 @@ struct ToolState {
     bool is_in_tissue = false;  ///< true if the tool splits elements and its cut ends inside one
     /// What the tissue exerts on a tool, mean over the step: force, N, and torque about the origin
     /// of the tool at the end of the step, N m. For a suture, the force on its thread at its first
-    /// point, whose length is the tension, and no torque. Zero for carvers, cuts, and blades
-    /// without a toughness.
+    /// point, whose length is the tension, and no torque. Zero for carvers, cuts, scissors, and
+    /// blades without a toughness.
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 };
 
@@ -182,12 +182,11 @@ class World {
 
     /// Adds a tool. The tool is present in the world only after a pose has been set.
     /// Throws InputError for an invalid shape, such as a blade with fewer than two points, or a
-    /// radius that is not above 0, and for a probe or a grasper in a world
-    /// without contact.
+    /// radius that is not above 0, and for a tool that feels a force in a world without contact.
     ToolId add_tool(ToolDef def);
     /// Puts a tool at a pose immediately. The tool cuts and pushes nothing on the path to this
-    /// pose, and a withdrawal of it no longer holds. A grasper opens its jaws. Throws InputError if
-    /// the tool is a blade whose cut ends in the tissue.
+    /// pose, and a withdrawal of it no longer holds. A tool that was closed is open. Throws
+    /// InputError if its cut ends in the tissue.
     void place_tool(ToolId tool, const Pose& pose);
     /// Sets the pose of the tool at the end of the next step. Without a call the tool does not
     /// move. A tool that was not present appears at this pose.

@@ -14,8 +14,6 @@
 
 namespace incise::sim {
 
-using cutting::Blade;
-using cutting::CutMode;
 
 namespace {
 

@@ -119,11 +119,11 @@ struct Suture {
 struct Scissors {
     static constexpr ToolTraits traits{
         .kind = "scissors", .cuts = true, .closes = true, .article = ""};
-    static constexpr double largest_angle = 2.5;  ///< rad; the blades are below it
-    double length = 0.0;                          ///< from the pivot to the tips, m
-    double angle = 0.6;                           ///< between the blades when they are open, rad
-    double closing_time = 0.2;                    ///< from open to closed, s; they open as fast
-    double snap = default_snap;                   ///< see SplitOptions
+    static constexpr double least_angle = 0.01, largest_angle = 2.5;  ///< rad, the second excluded
+    double length = 0.0;         ///< from the pivot to the tips, m
+    double angle = 0.6;          ///< between the blades when they are open, rad
+    double closing_time = 0.2;   ///< from open to closed, s; they open as fast
+    double snap = default_snap;  ///< see SplitOptions
     static void archive(auto& ar, auto& self) {
         ar(self.length, self.angle, self.closing_time, self.snap);
     }

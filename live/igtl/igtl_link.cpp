@@ -419,9 +419,9 @@ std::vector<Order> IgtlLink::orders(const Session& session) {
             } else if (event.kind == Kind::pose) {
                 orders.push_back(MoveTool{name, event.pose});
             } else if (event.kind == Kind::close) {
-                orders.push_back(CloseGrasper{name});
+                orders.push_back(CloseTool{name});
             } else if (event.kind == Kind::open) {
-                orders.push_back(OpenGrasper{name});
+                orders.push_back(OpenTool{name});
             } else {
                 orders.push_back(WithdrawTool{name});
                 is_in_hand = false;

@@ -149,8 +149,8 @@ void LiveLoop::obey(std::uint64_t page, const Json& wish) {
     if (what == "take") return take(page, wish);
     if (what == "move") return execute(MoveTool{in_hand(page), pose_in(member(wish, "pose"))});
     if (what == "drop") return drop(page);
-    if (what == "close") return execute(CloseGrasper{in_hand(page)});
-    if (what == "open") return execute(OpenGrasper{in_hand(page)});
+    if (what == "close") return execute(CloseTool{in_hand(page)});
+    if (what == "open") return execute(OpenTool{in_hand(page)});
     if (what == "sew") return sew(wish);
     if (what == "tighten") return tighten(wish);
     if (what == "untie") return execute(UntieSuture{text_in(wish, "name")});

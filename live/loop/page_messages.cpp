@@ -102,6 +102,8 @@ Json PageMessages::state_of(const ScriptedTool& tool) const {
     const sim::World& world = session_.world();
     if (!world.is_tool_present(tool.id)) return {{"present", false}};
     Json state = {{"present", true}, {"pose", json_of(world.tool_pose(tool.id))}};
+    if (cutting::traits_of(world.tool(tool.id).shape).closes)
+        state["closed"] = world.is_tool_closed(tool.id);
     for (const sim::ToolState& row : world.report().tools)
         if (row.tool == tool.id) state["force"] = json_of(row.force);
     return state;

@@ -1,5 +1,8 @@
 // The keys of a blade.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
 #include "incise/scenario/tools/kinds.h"
 #include "incise/scenario/tools/tool_shapes.h"
 
@@ -23,7 +26,7 @@ class BladeKind final : public ToolKind {
     BladeKind()
         : ToolKind(Blade::traits, blade_keys, {.why_two_keys = "a blade cuts where it moves"}) {}
 
-    bool is_suggested_by(const TableReader& tool) const override { return tool.has("edge"); }
+    bool reads_unknown_kinds() const override { return true; }
     void read(const TableReader& tool, const std::filesystem::path&,
               ToolSpec& spec) const override {
         Blade blade;
@@ -41,6 +44,27 @@ class BladeKind final : public ToolKind {
             for (const char* key : {"toughness", "snap"})
                 if (tool.has(key)) tool.error(key, "belongs to mode = \"split\": leave it out");
         spec.shape = std::move(blade);
+    }
+    std::vector<std::vector<Vec3>> edges(const ScriptedTool& tool, double end_time) const override {
+        const auto& blade = std::get<Blade>(tool.shape);
+        const auto& keys = tool.path.keys();
+        std::vector<std::vector<Vec3>> edges;
+        const auto add = [&](double time) {
+            cutting::place_edge(blade, tool.path.pose(std::min(time, end_time)),
+                                edges.emplace_back());
+        };
+        add(keys.front().time);
+        // Where the edge turns, its points move on arcs. Short parts approximate these.
+        constexpr double longest_turn = 0.05;
+        for (std::size_t key = 1; key < keys.size() && keys[key - 1].time < end_time; ++key) {
+            const auto &from = keys[key - 1], &to = keys[key];
+            const double turn = from.value.rotation.angularDistance(to.value.rotation);
+            const int num_parts = std::max(1, static_cast<int>(std::ceil(turn / longest_turn)));
+            for (int part = 1; part < num_parts; ++part)
+                add(from.time + part * (to.time - from.time) / num_parts);
+            add(to.time);
+        }
+        return edges;
     }
     std::optional<Extent> extent(const cutting::ToolShape& shape) const override {
         return Extent{std::get<Blade>(shape).edge};

@@ -15,7 +15,7 @@ class CarverKind final : public ToolKind {
   public:
     CarverKind() : ToolKind(Carver::traits, carver_keys, {}) {}
 
-    bool is_suggested_by(const TableReader& tool) const override { return tool.has("shape"); }
+    bool reads_unknown_kinds() const override { return true; }
     void read(const TableReader& tool, const std::filesystem::path&,
               ToolSpec& spec) const override {
         Carver carver{cutting::Sphere{1.0}};

@@ -20,10 +20,10 @@ class CutKind final : public ToolKind {
                    {.time_hint = "when it cuts, seconds, as in time = 0.5",
                     .why_no_path = "belongs to a blade: leave it out"}) {}
 
-    bool is_suggested_by(const TableReader& tool) const override {
-        return tool.has("plane") || tool.has("surface");
+    bool reads_unknown_kinds() const override { return true; }
+    bool has_all(const TableReader& tool) const override {
+        return tool.one_of({"plane", "surface"}).has_value();
     }
-    void check_keys(const TableReader& tool) const override { tool.one_of({"plane", "surface"}); }
     void read(const TableReader& tool, const std::filesystem::path& folder,
               ToolSpec& spec) const override {
         cutting::PlaneCut cut;
@@ -46,9 +46,11 @@ class CutKind final : public ToolKind {
         if (tool.has("scale") && tool.has("plane") && !tool.has("surface"))
             tool.error("scale", "is for surfaces: leave it out");
     }
-    void take_surface(topology::SurfaceData surface, cutting::ToolShape& shape,
+    void take_surface(topology::SurfaceData surface, double scale, cutting::ToolShape& shape,
                       std::vector<std::string>& warnings) const override {
+        // They name places with the coordinates of the file.
         for (const auto& defect : cutting::defects_of_surface(surface)) warnings.push_back(defect);
+        for (Vec3& x : surface.points) x *= scale;
         std::get<cutting::SurfaceCut>(shape).surface = std::move(surface);
     }
 };

@@ -100,8 +100,9 @@ class ProbeKind final : public ToolKind {
         if (key != "surface") return "";
         return "goes into the shape, as in shape = { surface = { file = \"probe.stl\" } }";
     }
-    void take_surface(topology::SurfaceData surface, cutting::ToolShape& shape,
+    void take_surface(topology::SurfaceData surface, double scale, cutting::ToolShape& shape,
                       std::vector<std::string>& warnings) const override {
+        for (Vec3& x : surface.points) x *= scale;
         bool was_turned = false;
         cutting::Solid solid = cutting::make_solid(surface, was_turned);
         if (was_turned) warnings.push_back("its triangles face inwards, and are turned");

@@ -1,6 +1,6 @@
 // The keys of scissors.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include <cmath>
+#include <algorithm>
 
 #include "incise/scenario/tools/kinds.h"
 #include "incise/scenario/tools/tool_shapes.h"
@@ -18,7 +18,8 @@ constexpr ToolKey scissors_keys[] = {
     {"snap"},
     {"close", "when they begin to close, seconds, as in close = 0.2", false, true},
     {"open", {}, false, true}};
-constexpr Limits angle_limits{.low = 0.0, .high = Scissors::largest_angle};
+constexpr Limits angle_limits{
+    .low = Scissors::least_angle, .high = Scissors::largest_angle, .includes_low = true};
 
 class ScissorsKind final : public ToolKind {
   public:
@@ -39,6 +40,20 @@ class ScissorsKind final : public ToolKind {
     }
     void check_times(const TableReader& tool, const ToolSpec& spec, double) const override {
         check_jaw_times(tool, spec);
+    }
+    std::vector<std::vector<Vec3>> edges(const ScriptedTool& tool, double end_time) const override {
+        const auto& scissors = std::get<Scissors>(tool.shape);
+        std::vector<std::vector<Vec3>> edges;
+        constexpr int num_parts = 16;  // they may move and turn while they close
+        for (int part = 0; part <= num_parts && tool.close; ++part) {
+            const double closed = static_cast<double>(part) / num_parts;
+            const double time = *tool.close + closed * scissors.closing_time;
+            if (time > std::min({end_time, tool.path.last_time(), tool.open.value_or(time)})) break;
+            std::vector<Vec3>& edge = edges.emplace_back();
+            for (const Vec3& x : cutting::meeting_line(scissors, closed))
+                edge.push_back(tool.path.pose(time).to_world(x));
+        }
+        return edges;
     }
     std::optional<Extent> extent(const cutting::ToolShape& shape) const override {
         Extent extent{{Vec3::Zero()}};

@@ -35,7 +35,7 @@ struct Extent {
 
 /// A kind of tool. Each is a class of its own, in the file of this folder that has its name.
 ///
-/// A tool with a pose has the key `path`, another one the key `time`.
+/// A tool that a pose leads has the key `path`, another one the key `time`: see has_path().
 class ToolKind {
   public:
     /// What a kind says about the keys `path` and `time`, for messages.
@@ -56,10 +56,11 @@ class ToolKind {
     const Motion& motion() const { return motion_; }
     bool has_path() const { return traits_.has_pose && !traits_.is_at_once; }
 
-    /// True if keys of a tool without a known kind suggest this one.
-    virtual bool is_suggested_by(const TableReader& /*tool*/) const { return false; }
-    /// Reports what is missing, beyond the keys with a hint.
-    virtual void check_keys(const TableReader& /*tool*/) const {}
+    /// True if a tool without a known kind is read as this one too, so that all that is wrong with
+    /// it is told at once. Kinds whose keys have another meaning elsewhere are left out.
+    virtual bool reads_unknown_kinds() const { return false; }
+    /// Reports what is missing, beyond the keys with a hint. Returns false if there is such.
+    virtual bool has_all(const TableReader& /*tool*/) const { return true; }
     /// Reads the keys of the kind. What is wrong is reported, and left as it is by default.
     /// @param folder  of the scenario, to which the names of files are relative
     virtual void read(const TableReader& tool, const std::filesystem::path& folder,
@@ -72,9 +73,11 @@ class ToolKind {
     virtual std::string advice_on(std::string_view /*key*/) const { return ""; }
 
     /// Gives a tool the surface of its file. Throws InputError if it cannot be its shape.
-    /// @param surface   scaled, m
+    /// @param surface   as in the file
+    /// @param scale     factor of all coordinates
     /// @param warnings  receives warnings, without the name of the file
-    virtual void take_surface(topology::SurfaceData /*surface*/, cutting::ToolShape& /*shape*/,
+    virtual void take_surface(topology::SurfaceData /*surface*/, double /*scale*/,
+                              cutting::ToolShape& /*shape*/,
                               std::vector<std::string>& /*warnings*/) const {}
 
     /// Throws InputError if the tool does not fit the body at rest.
@@ -83,6 +86,12 @@ class ToolKind {
     virtual std::optional<std::string> warning_of_begin(const ScriptedTool& /*tool*/,
                                                         const topology::Mesh& /*mesh*/) const {
         return std::nullopt;
+    }
+    /// Returns the sharp edge of a tool with a path at moments one after the other, until
+    /// `end_time`, s, in the frame of the world, m. Between two of them it divides what it sweeps.
+    virtual std::vector<std::vector<Vec3>> edges(const ScriptedTool& /*tool*/,
+                                                 double /*end_time*/) const {
+        return {};
     }
     /// Returns the extent of a tool with a path. Without one it may be everywhere.
     virtual std::optional<Extent> extent(const cutting::ToolShape& /*shape*/) const {

@@ -18,9 +18,10 @@ using cutting::Scissors;
 std::string fault_of(const Scissors& scissors) {
     if (!(scissors.length > 0.0 && std::isfinite(scissors.length)))
         return "their length is " + format_number(scissors.length) + " m: it must be above 0";
-    if (!(scissors.angle > 0.0 && scissors.angle < Scissors::largest_angle))
-        return "their angle is " + format_number(scissors.angle) +
-               ": it must be above 0 and below " + format_number(Scissors::largest_angle);
+    if (!(scissors.angle >= Scissors::least_angle && scissors.angle < Scissors::largest_angle))
+        return "their angle is " + format_number(scissors.angle) + ": it must be from " +
+               format_number(Scissors::least_angle) + " and below " +
+               format_number(Scissors::largest_angle);
     if (!(scissors.closing_time > 0.0 && std::isfinite(scissors.closing_time)))
         return "their closing time is " + format_number(scissors.closing_time) +
                " s: it must be above 0";
@@ -44,8 +45,11 @@ class ScissorsActor final : public ActorOf<Scissors> {
 
     void begin_step(double dt) override {
         const double turn = dt / shape().closing_time;
+        constexpr double rounding = 1e-9;  // of sums of steps: no step is left over for it
         is_cutting_ = is_closing_ && closed_ < 1.0;
-        target_closed_ = std::clamp(closed_ + (is_closing_ ? turn : -turn), 0.0, 1.0);
+        target_closed_ = closed_ + (is_closing_ ? turn : -turn);
+        if (target_closed_ > 1.0 - rounding) target_closed_ = 1.0;
+        if (target_closed_ < rounding) target_closed_ = 0.0;
     }
     void let_go() override {
         is_closing_ = is_cutting_ = false;
@@ -67,14 +71,17 @@ class ScissorsActor final : public ActorOf<Scissors> {
     }
     void cut(const Tissue& tissue, const CarryOut& carry_out) override {
         if (!is_cutting_ && !is_in_tissue(tissue.cutter)) return;
-        // Blades that open leave the end of the cut where it is.
+        // Blades that open leave the end of the cut where it is, wherever they go.
+        const Pose& there = is_cutting_ ? target() : pose();
         const double closed = is_cutting_ ? target_closed_ : closed_;
         carry_out([&] {
             place_edge(pose(), closed_, edge_.before);
-            place_edge(target(), closed, edge_.after);
+            place_edge(there, closed, edge_.after);
             return edge_.split(tissue);
         });
-        if (!is_cutting_ || closed == 1.0) carry_out([&] { return edge_.end(tissue); });
+        if (is_cutting_ && closed < 1.0) return;
+        carry_out([&] { return edge_.end(tissue); });
+        is_cutting_ = false;  // a step of statics asks again
     }
     void arrive() override { closed_ = target_closed_; }
     void leave(const Tissue& tissue, const CarryOut& carry_out) override {

@@ -35,7 +35,7 @@ class SutureActor final : public ActorOf<cutting::Suture> {
         contact_->tie(tissue.model);
         set_present(true);
         length_ = target_length_ = contact_->length();
-        return num_held();
+        return num_points();
     }
     void set_length_target(double length) override {
         if (!is_present()) throw InputError("suture '" + def().name + "' is not tied");
@@ -49,8 +49,7 @@ class SutureActor final : public ActorOf<cutting::Suture> {
         let_go();
         set_present(false);
     }
-    bool is_tied() const override { return is_present() && num_held() >= 2; }
-    std::size_t num_held() const override { return contact_ ? contact_->num_held() : 0; }
+    bool is_tied() const override { return is_present() && num_points() >= 2; }
 
     contact::ToolContact* touch(const Tissue&, double, double to, double) override {
         if (contact_) contact_->draw(std::lerp(length_, target_length_, to));
@@ -60,6 +59,7 @@ class SutureActor final : public ActorOf<cutting::Suture> {
     void let_go() override { contact_.reset(); }
 
   private:
+    std::size_t num_points() const { return contact_ ? contact_->num_held() : 0; }
     void arrive() override { length_ = target_length_; }
     void save_own(ArchiveWriter& ar) const override {
         ar(length_, target_length_, contact_.has_value());

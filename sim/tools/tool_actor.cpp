@@ -20,9 +20,13 @@ void ToolActor::require_fit(const Tissue& tissue) const {
         refuse("exerts a force: it needs the explicit solver, with contact enabled");
 }
 
-void ToolActor::require_pose(const Pose& pose) const {
+void ToolActor::require_sound(const Pose& pose) const {
     if (!pose.is_sound())
         require_none("its pose must have a finite position, m, and a rotation of length 1");
+}
+
+void ToolActor::require_pose(const Pose& pose) const {
+    require_sound(pose);
     if (!cutting::traits_of(def_.shape).has_pose)
         refuse("is a suture, which has no pose: use tie_suture()");
 }
@@ -45,7 +49,7 @@ void ToolActor::set_target(const Pose& pose) {
 
 void ToolActor::withdraw(const Pose* pose_before_end) {
     if (!is_present_) refuse("is not there to be withdrawn");
-    if (pose_before_end) require_pose(*pose_before_end);
+    if (pose_before_end) require_sound(*pose_before_end);
     is_leaving_ = true;
     pose_before_end_.reset();
     if (pose_before_end) pose_before_end_ = *pose_before_end;
@@ -100,10 +104,9 @@ std::unique_ptr<ToolActor> load_actor(ArchiveReader& ar, const Tissue& tissue) {
     ar(def.name, def.shape);
     std::unique_ptr<ToolActor> actor = sound_actor(def, tissue);
     ToolActor::list(ar, *actor);
-    const auto is_sound = [](const Pose& pose) { return pose.is_sound(); };
-    if (!is_sound(actor->pose_) || !is_sound(actor->target_) ||
-        !is_sound(actor->pose_before_end_.value_or(Pose())))
-        actor->require_none("its pose must have a finite position, m, and a rotation of length 1");
+    for (const Pose& pose :
+         {actor->pose_, actor->target_, actor->pose_before_end_.value_or(Pose())})
+        actor->require_sound(pose);
     actor->restore_own(ar, tissue);
     return actor;
 }

@@ -121,6 +121,8 @@ class ToolActor {
   private:
     friend std::unique_ptr<ToolActor> make_actor(const ToolDef& def, const Tissue& tissue);
     friend std::unique_ptr<ToolActor> load_actor(ArchiveReader& ar, const Tissue& tissue);
+    void require_sound(const Pose& pose) const;
+    /// Throws InputError unless the tool can be at the pose.
     void require_pose(const Pose& pose) const;
     static void list(auto& ar, auto& self) {
         ar(self.is_present_, self.pose_, self.target_, self.is_leaving_, self.pose_before_end_);

@@ -69,7 +69,7 @@ class RandomHands {
                     break;
                 case 3:
                     give(session, add_ball("grasper", name, x, y, 0.05));
-                    give(session, CloseGrasper{name});
+                    give(session, CloseTool{name});
                     break;
                 default:
                     give(session, add_suture(name, x, y));
@@ -89,7 +89,7 @@ class RandomHands {
             const Eigen::Quaterniond turn(Eigen::AngleAxisd(between(-0.1, 0.1), Vec3::UnitX()));
             give(session, MoveTool{name, {tool.pose.rotation * turn, at}});
             if (one_in(8)) give(session, WithdrawTool{name});
-            if (tool.kind == "grasper" && one_in(8)) give(session, OpenGrasper{name});
+            if (tool.kind == "grasper" && one_in(8)) give(session, OpenTool{name});
         }
     }
 

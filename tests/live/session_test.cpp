@@ -109,7 +109,7 @@ TEST(Session, RefusesOrdersAndChangesNothing) {
     EXPECT_THAT(refusal_of(session, add_blade("carver_1", 0, 0, 0)), HasSubstr("already"));
     EXPECT_THAT(refusal_of(session, move("spoon", 0, 0, 0)), HasSubstr("no tool 'spoon'"));
     EXPECT_THAT(refusal_of(session, move("carver_1", 0, 0, 0)), HasSubstr("no tool 'carver_1'"));
-    EXPECT_THAT(refusal_of(session, order(R"({"close":"knife"})")), HasSubstr("grasper"));
+    EXPECT_THAT(refusal_of(session, order(R"({"close":"knife"})")), HasSubstr("no jaws"));
     EXPECT_THAT(refusal_of(session, order(R"({"draw":"knife","length":1})")), HasSubstr("suture"));
     EXPECT_THAT(refusal_of(session, MoveTool{"knife", {Eigen::Quaterniond(0, 0, 0, 0), {}}}),
                 HasSubstr("not sound"));
@@ -119,6 +119,11 @@ TEST(Session, RefusesOrdersAndChangesNothing) {
     EXPECT_THAT(refusal_of(session, order(R"({"add":"x","at":[0,0,0],
                     "tool":{"kind":"blade","edge":[[0,0,1e300],[0,0,-1e300]]}})")),
                 HasSubstr("1000 times as large"));
+    for (const char* large : {R"({"kind":"scissors","length":1e200})",
+                              R"({"kind":"carver","shape":{"sphere":{"radius":1e30}}})"})
+        EXPECT_THAT(refusal_of(session, order(R"({"add":"x","at":[0,0,0],"tool":)" +
+                                              std::string(large) + "}")),
+                    HasSubstr("1000 times as large"));
     session.tick();
     other.tick();
     EXPECT_EQ(session.checksum(), other.checksum());

@@ -165,26 +165,32 @@ TEST(ToolErrors, OfScissors) {
     const std::string scissors = "[[tool]]\nkind = \"scissors\"\n";
     const std::string path =
         "path = [{ time = 0.1, at = [0, 0, 0] }, { time = 0.9, at = [0, 0, 0] }]\n";
-    EXPECT_EQ(error_of(scissors + "length = 2\nclose = 0.2\nopen = 0.5\nangle = 1\n"
-                                  "closing_time = 0.1\nsnap = 0\n" + path),
+    EXPECT_EQ(error_of(scissors +
+                       "length = 2\nclose = 0.2\nopen = 0.5\nangle = 1\n"
+                       "closing_time = 0.1\nsnap = 0\n" +
+                       path),
               "");
     EXPECT_EQ(error_of(scissors + path),
               "scene.toml:9:1: key 'tool[0].length': is missing: from the pivot to the tips, m, as "
               "in length = 0.02 | scene.toml:9:1: key 'tool[0].close': is missing: when they begin "
               "to close, seconds, as in close = 0.2");
-    EXPECT_EQ(error_of(scissors + "length = 0\nangle = 2.5\nclosing_time = 0\nclose = 1\n" + path),
-              "scene.toml:11:10: key 'tool[0].length': 0 is not allowed: must be above 0 | "
-              "scene.toml:12:9: key 'tool[0].angle': 2.5 is not allowed: must be above 0 and below "
-              "2.5 | scene.toml:13:16: key 'tool[0].closing_time': 0 is not allowed: must be above "
-              "0 | scene.toml:14:9: key 'tool[0].close': 1 is not allowed: must be within the path, "
-              "from 0.1 to 0.9 s");
-    EXPECT_EQ(error_of(scissors + "length = 1\nclose = 0.2\npath = [{ time = 0, at = [0, 0, 0] }]\n"),
-              "scene.toml:13:8: key 'tool[0].path': must have at least 2 times: scissors are there "
-              "from the first to the last");
-    EXPECT_EQ(error_of("[[tool]]\nkind = \"blade\"\nedge = [[0, 0, 0], [0, 0, 1]]\nangle = 1\n"
-                       "close = 0.5\n" + path),
-              "scene.toml:12:9: key 'tool[0].angle': belongs to scissors: leave it out | "
-              "scene.toml:13:9: key 'tool[0].close': belongs to a grasper or scissors: leave it out");
+    EXPECT_EQ(
+        error_of(scissors + "length = 0\nangle = 2.5\nclosing_time = 0\nclose = 1\n" + path),
+        "scene.toml:11:10: key 'tool[0].length': 0 is not allowed: must be above 0 | "
+        "scene.toml:12:9: key 'tool[0].angle': 2.5 is not allowed: must be at least 0.01 and "
+        "below 2.5 | scene.toml:13:16: key 'tool[0].closing_time': 0 is not allowed: must be above "
+        "0 | scene.toml:14:9: key 'tool[0].close': 1 is not allowed: must be within the path, "
+        "from 0.1 to 0.9 s");
+    EXPECT_EQ(
+        error_of(scissors + "length = 1\nclose = 0.2\npath = [{ time = 0, at = [0, 0, 0] }]\n"),
+        "scene.toml:13:8: key 'tool[0].path': must have at least 2 times: scissors are there "
+        "from the first to the last");
+    EXPECT_EQ(
+        error_of("[[tool]]\nkind = \"blade\"\nedge = [[0, 0, 0], [0, 0, 1]]\nangle = 1\n"
+                 "close = 0.5\n" +
+                 path),
+        "scene.toml:12:9: key 'tool[0].angle': belongs to scissors: leave it out | "
+        "scene.toml:13:9: key 'tool[0].close': belongs to a grasper or scissors: leave it out");
 }
 
 TEST(ToolErrors, OfCuts) {
@@ -197,6 +203,14 @@ TEST(ToolErrors, OfCuts) {
               "scene.toml:11:8: key 'tool[0].time': -1 is not allowed: must be at least 0 | "
               "scene.toml:12:39: key 'tool[0].plane.normal': is not allowed: a direction must have "
               "a length above 0");
+    // What lies along no plane or along two surfaces is not compared with the body.
+    for (const char* along :
+         {"", "surface = 'none.stl'\nplane = { point = [9, 9, 9], normal = [1, 0, 0] }\n"}) {
+        const auto report = ScenarioFile(minimal + cut + "time = 0\n" + along).read();
+        EXPECT_NE(report.errors.at(0).find("plane, surface"), std::string::npos)
+            << report.errors[0];
+        EXPECT_TRUE(report.scenario.tools.at(0).path.empty());
+    }
     EXPECT_NE(error_of(cut + "time = 1\nsurface = \"none.stl\"\n").find("there is no file"),
               std::string::npos);
     EXPECT_EQ(error_of(cut + "time = 1\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\n"
@@ -215,6 +229,19 @@ TEST(ToolErrors, OfAKindHideNoSurface) {
         EXPECT_NE(errors[0].find("key 'tool[0].kind': "), std::string::npos) << errors[0];
         EXPECT_NE(errors[1].find(": liver.vtu: "), std::string::npos) << errors[1];
     }
+    // It is read as a blade and as a cut; the surface is sound.
+    const support::TemporaryFolder folder;
+    const auto file = folder / "triangle.off";
+    std::ofstream(file) << "OFF\n3 1 0\n0 0 0.5\n1 0 0.5\n0 1 0.5\n3 0 1 2\n";
+    const auto errors = ScenarioFile(minimal +
+                                     "[[tool]]\nkind = 'cat'\nedge = [[0, 0, 0], [1, 0, 0]]\n"
+                                     "surface = '" +
+                                     file.string() + "'\n")
+                            .all_errors();
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_NE(errors[0].find("key 'tool[0].kind': "), std::string::npos) << errors[0];
+    EXPECT_EQ(ScenarioFile(minimal + "[[tool]]\nsnap = 0.9\ntoughness = -1\n").all_errors().size(),
+              3u);
 }
 
 }  // namespace

@@ -211,6 +211,46 @@ TEST(Scissors, OpenAndCloseAgain) {
     }
 }
 
+// Scissors that open while they move leave the end of the cut where it was.
+TEST(Scissors, CutNothingWhileTheyOpen) {
+    Snip s;
+    s.num_steps = 8;
+    Outcome still, moved;
+    for (const double away : {0.0, 0.01}) {
+        World world = strip(s);
+        const ToolId tool = add_scissors(world, s);
+        Outcome& done = away == 0.0 ? still : moved;
+        world.close_tool(tool);
+        step(world, s, 4, done);
+        world.open_tool(tool);
+        Pose pose = across_strip(s);
+        pose.position.y() += away;
+        world.set_tool_pose(tool, pose);
+        step(world, s, 3, done);
+        EXPECT_FALSE(world.report().tools.at(0).is_in_tissue);
+    }
+    EXPECT_EQ(moved.area, still.area);
+}
+
+// In statics the body moves to its equilibrium after a cut, past blades that have closed.
+TEST(Scissors, HaveCutWhenTheyHaveClosedInStatics) {
+    Snip s{.solver = Solver::statics, .x = 0.0176, .z = 0.0052};
+    s.length = 0.022;
+    s.num_steps = 3;
+    World world = strip(s);
+    const ToolId tool = add_scissors(world, s);
+    Outcome done;
+    world.close_tool(tool);
+    step(world, s, 3, done);
+    EXPECT_FALSE(world.report().tools.at(0).is_in_tissue);
+    Outcome after;
+    std::vector<CellId> cells;
+    for (const CellId e : world.mesh().elements()) cells.push_back(e);
+    world.add_load({.name = "pull", .kind = physics::BodyLoad{{cells}, {0, 2e4, 0}}});
+    step(world, s, 2, after);
+    EXPECT_EQ(after.num_edits, 0U);
+}
+
 // Open scissors cut nothing, wherever they go.
 TEST(Scissors, CutNothingWhileTheyAreOpen) {
     Snip s;
@@ -290,7 +330,7 @@ TEST(Scissors, AreRefusedIfTheyCannotBe) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double length : {0.0, -1.0, nan})
         EXPECT_THAT(error_of({length}), HasSubstr("length"));
-    for (const double angle : {0.0, 2.5, nan})
+    for (const double angle : {0.0, 1e-18, 2.5, nan})
         EXPECT_THAT(error_of({0.01, angle}), HasSubstr("angle"));
     for (const double time : {0.0, -1.0, nan})
         EXPECT_THAT(error_of({0.01, 0.5, time}), HasSubstr("closing time"));

@@ -52,6 +52,9 @@ function span(part, from, to, width) {
  * @property {number} size diagonal of the body, m
  */
 
+/** What is drawn of a tool in its present state. @param {{kind: string, tool: import('./types.js').ToolDefinition, closed?: boolean}} state */
+const asShown = (state) => modeOfKind(state.kind)?.shown?.(state) ?? state.tool;
+
 /** @typedef {'held'|'ghost'|'scripted'|'obstacle'} Part what a tool is in the scene */
 
 export class ToolsView {
@@ -146,13 +149,12 @@ export class ToolsView {
         for (const one of scripted) {
             if (!one.present || !one.pose) continue;
             seen.add(`=${one.name}`);
-            this.#place(`=${one.name}`, one.tool, one.pose, camera, one.is_obstacle ? 'obstacle' : 'scripted');
+            this.#place(`=${one.name}`, asShown(one), one.pose, camera, one.is_obstacle ? 'obstacle' : 'scripted');
         }
         for (const tool of tools) {
             if (!tool.present || !tool.pose || tool.kind === 'suture') continue;
             seen.add(tool.name);
-            const shown = modeOfKind(tool.kind)?.shown?.(tool) ?? tool.tool;
-            this.#place(tool.name, shown, tool.pose, camera, 'held');
+            this.#place(tool.name, asShown(tool), tool.pose, camera, 'held');
         }
         if (wanted) {
             seen.add('?');

@@ -47,6 +47,7 @@
  * @typedef {Object} ScriptedState
  * @property {boolean} present
  * @property {Pose|null} [pose]
+ * @property {boolean} [closed] of a tool that closes
  * @property {number[]|null} [force] N
  */
 

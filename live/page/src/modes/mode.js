@@ -32,7 +32,7 @@
  *     settings to begin with: lengths that suit a mean edge and a body, and whether tools touch tissue
  * @property {(bench: Bench) => Mode} [make]
  * @property {(tool: import('../types.js').ToolDefinition, brush: import('../tools_view.js').Brush) => void} [draw]
- * @property {(state: import('../types.js').ToolState) => import('../types.js').ToolDefinition} [shown]
+ * @property {(state: {tool: import('../types.js').ToolDefinition, closed?: boolean}) => import('../types.js').ToolDefinition} [shown]
  *     what is drawn of a tool in its present state
  */
 

@@ -19,15 +19,19 @@ export class Scissors extends Mode {
     #point = null;
     #into = new Vector3(0, 0, -1);
     #turn = 0;
+    /** Length of the blades, which stays while they are held. */
+    #length = 0;
+    /** The pointer is over the body: there the wheel turns them, elsewhere it zooms. */
+    #isOver = false;
 
     /** @returns {import('../types.js').ToolDefinition} */
     #definition() {
-        return { kind: 'scissors', length: this.bench.settings.blades, angle, closing_time: closingTime };
+        return { kind: 'scissors', length: this.#length, angle, closing_time: closingTime };
     }
 
     /** @param {Vector3} point of the surface @param {Vector3} into @returns {import('../types.js').Pose} */
     #pose(point, into) {
-        const pose = poseOf(point.clone().addScaledVector(into, -outside * this.bench.settings.blades), into);
+        const pose = poseOf(point.clone().addScaledVector(into, -outside * this.#length), into);
         const turn = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), this.#turn);
         return { at: pose.at, rotation: new Quaternion().fromArray(pose.rotation).multiply(turn).toArray() };
     }
@@ -38,6 +42,7 @@ export class Scissors extends Mode {
         const hit = aim.pick(x, y);
         this.#point = null;
         if (!hit) return;
+        this.#length = this.bench.settings.blades;
         this.#point = hit.point.clone();
         this.#into = aim.into(hit, x, y);
         hand.take(this.#definition(), this.#pose(this.#point, this.#into));
@@ -53,6 +58,7 @@ export class Scissors extends Mode {
     /** @param {number} notches @override */
     deepen(notches) {
         if (!this.bench.hand.isEmpty) return true;
+        if (!this.#isOver) return false;
         this.#turn += notches * notch;
         this.bench.changed();
         return true;
@@ -68,6 +74,8 @@ export class Scissors extends Mode {
     preview(x, y) {
         const { aim } = this.bench;
         const hit = aim.pick(x, y);
+        this.#isOver = hit !== null;
+        this.#length = this.bench.settings.blades;
         return hit ? { tool: this.#definition(), pose: this.#pose(hit.point, aim.into(hit, x, y)) } : null;
     }
 }
