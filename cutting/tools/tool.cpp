@@ -21,8 +21,9 @@ std::shared_ptr<const CutSurface> cut_surface_of(const ToolShape& shape) {
 std::array<Vec3, 2> meeting_line(const Scissors& scissors, double closed) {
     // The blades never meet in the pivot itself: a line without length cuts nothing.
     constexpr double nearest = 0.02;  // of the length
-    const double along = scissors.length * std::lerp(nearest, 1.0, closed);
-    const double across = along * std::tan(0.5 * scissors.angle);
+    const double on_blade = scissors.length * std::lerp(nearest, 1.0, closed);
+    const double across = on_blade * std::sin(0.5 * scissors.angle);
+    const double along = on_blade * std::cos(0.5 * scissors.angle);
     return {Vec3(-across, 0.0, -along), Vec3(across, 0.0, -along)};
 }
 

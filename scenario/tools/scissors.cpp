@@ -1,7 +1,10 @@
 // The keys of scissors.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 
+#include "incise/base/number_format.h"
+#include "incise/scenario/diagnostics.h"
 #include "incise/scenario/tools/kinds.h"
 #include "incise/scenario/tools/tool_shapes.h"
 
@@ -38,8 +41,21 @@ class ScissorsKind final : public ToolKind {
         read_jaw_times(tool, spec);
         spec.shape = scissors;
     }
-    void check_times(const TableReader& tool, const ToolSpec& spec, double) const override {
+    void check_times(const TableReader& tool, const ToolSpec& spec,
+                     double end_time) const override {
         check_jaw_times(tool, spec);
+        if (spec.path.empty() || !tool.is_sound("close") || !tool.is_sound("closing_time")) return;
+        const double whole = std::get<Scissors>(spec.shape).closing_time;
+        double end = std::min(spec.path.back().time, spec.open.value_or(spec.path.back().time));
+        if (end_time > 0.0) end = std::min(end, end_time);
+        const double part = (end - *spec.close) / whole;
+        constexpr double rounding = 1e-9;
+        if (part < 1.0 - rounding)
+            tool.warning("close",
+                         "tool " + in_quotes(spec.name) + " closes by " +
+                             format_number(std::floor(100.0 * std::max(part, 0.0) + rounding)) +
+                             " % only, until " + format_number(end) +
+                             " s: begin earlier, or use a shorter closing_time");
     }
     std::vector<std::vector<Vec3>> edges(const ScriptedTool& tool, double end_time) const override {
         const auto& scissors = std::get<Scissors>(tool.shape);

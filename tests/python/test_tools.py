@@ -114,7 +114,7 @@ class Tools(unittest.TestCase):
         # They point along y, and open along z.
         turn = incise.Pose.turned([0, 0, 0], [1, -1, 1], 2 * np.pi / 3).rotation
         at = [low[0] + 0.53 * size[0], low[1] - size[1], low[2] + 0.5 * size[2]]
-        scissors = body.add_tool("scissors", {"kind": "scissors", "length": 2.2 * size[1],
+        scissors = body.add_tool("scissors", {"kind": "scissors", "length": 4.2 * size[1],
                                               "angle": 2.0, "closing_time": 0.01},
                                  incise.Pose(at, turn))
         self.assertEqual(scissors.kind, "scissors")

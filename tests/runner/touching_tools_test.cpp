@@ -149,7 +149,7 @@ TEST(TouchingTools, ScissorsCutBetweenTheirTimes) {
     const std::string scissors = R"(
 [[tool]]
 kind = "scissors"
-length = 0.2
+length = 0.4
 angle = 2
 closing_time = 0.05
 close = 0.02

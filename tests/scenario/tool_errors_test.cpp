@@ -161,6 +161,23 @@ TEST(ToolErrors, OfSutures) {
               "its reach, 0.05 m, from the body at rest; check its coordinates and units");
 }
 
+TEST(ToolErrors, OfScissorsThatHaveNoTime) {
+    const std::string scissors =
+        "[[tool]]\nkind = 'scissors'\nlength = 2\n"
+        "path = [{ time = 0, at = [0, 0, 0] }, { time = 0.5, at = [0, 0, 0] }]\n";
+    const auto warnings_of = [&](const std::string& more) {
+        return ScenarioFile(minimal + scissors + more).warnings();
+    };
+    EXPECT_TRUE(warnings_of("close = 0.1\n").empty());
+    EXPECT_TRUE(warnings_of("close = 0.1\nopen = 0.3\n").empty());
+    for (const std::string more :
+         {"close = 0.4\n", "close = 0.1\nopen = 0.2\n", "close = 0.2\nclosing_time = 0.6\n"}) {
+        const auto warnings = warnings_of(more);
+        ASSERT_EQ(warnings.size(), 1u) << more;
+        EXPECT_NE(warnings[0].find("closes by 50 % only"), std::string::npos) << warnings[0];
+    }
+}
+
 TEST(ToolErrors, OfScissors) {
     const std::string scissors = "[[tool]]\nkind = \"scissors\"\n";
     const std::string path =

@@ -36,7 +36,7 @@ struct Snip {
     double jitter = 0.0;  ///< of the inner nodes, as a share of the spacing
     double snap = cutting::default_snap;
     int num_steps = 7;     ///< while they close
-    double length = 0.04;  ///< from y = -0.01 on, m
+    double length = 0.06;  ///< of the blades, from y = -0.01 on, m
     double angle = 1.6;    ///< rad
 
     friend std::ostream& operator<<(std::ostream& out, const Snip& s) {
@@ -118,7 +118,7 @@ TEST(Scissors, PartAStripInAnyNumberOfSteps) {
         for (const double x : {0.0175, 0.02, 0.0213})
             for (const double z : {0.005, 0.0046})
                 for (const auto& [num_steps, length] :
-                     {std::pair{1, 0.04}, std::pair{7, 0.04}, std::pair{8, 0.05}})
+                     {std::pair{1, 0.06}, std::pair{7, 0.06}, std::pair{8, 0.07}})
                     for (const double jitter : {0.0, 0.3}) {
                         Snip s{.solver = solver, .x = x, .z = z, .jitter = jitter};
                         s.num_steps = num_steps;
@@ -137,8 +137,9 @@ TEST(Scissors, PartAStripInAnyNumberOfSteps) {
 // Steps that end exactly where the line of the blades is in a plane of the mesh.
 TEST(Scissors, MayStopInPlanesOfTheMesh) {
     Snip s;
-    // The line goes from 0.02 to 1 of the length, in steps of two spacings.
-    s.length = 4.0 * 2.0 * spacing / 0.98;
+    // The line goes from 0.02 to 1 of the depth, in steps of two spacings.
+    const double depth = 4.0 * 2.0 * spacing / 0.98;
+    s.length = depth / std::cos(0.5 * s.angle);
     s.num_steps = 4;
     for (const double shift : {0.0, 0.25, 0.5, 0.75})
         for (const double x : {0.0175, 0.02})
@@ -149,7 +150,7 @@ TEST(Scissors, MayStopInPlanesOfTheMesh) {
                 World world = strip(s);
                 const ToolId tool = add_scissors(world, s);
                 Pose pose = across_strip(s);
-                pose.position.y() = -0.01 + (shift - 0.02 * s.length / spacing) * spacing;
+                pose.position.y() = -0.01 + (shift - 0.02 * depth / spacing) * spacing;
                 world.place_tool(tool, pose);
                 close(world, s, tool);
                 EXPECT_EQ(topology::components(world.mesh()).count, 2);
@@ -157,26 +158,26 @@ TEST(Scissors, MayStopInPlanesOfTheMesh) {
 }
 
 // Blades that are too short leave the far side joined. The area is that of the triangle between
-// them, as far as it is in the strip, to the size of the elements at its rim.
+// them, as far as it is in the strip, to half an element at its rim.
 TEST(Scissors, CutNoMoreThanIsBetweenThem) {
-    for (const double length : {0.02, 0.025})
-        for (const double angle : {0.5, 1.6}) {
-            Snip s{.x = 0.0176, .z = 0.0052};
-            s.length = length;
-            s.angle = angle;
-            SCOPED_TRACE(testing::PrintToString(s));
-            World world = strip(s);
-            const Outcome done = close(world, s, add_scissors(world, s));
-            EXPECT_EQ(topology::components(world.mesh()).count, 1);
-            double between = 0.0;
-            constexpr double part = 1e-5;
-            for (double t = 0.01; t < length; t += part)
-                between += part * (std::min(t * std::tan(angle / 2), 0.0048) +
-                                   std::min(t * std::tan(angle / 2), 0.0052));
-            EXPECT_LT(done.area, between + 1e-9);
-            EXPECT_GT(done.area, 0.6 * between);
-            EXPECT_FALSE(world.report().tools.at(0).is_in_tissue);
-        }
+    for (const auto& [length, angle] : {std::pair{0.02, 0.5}, std::pair{0.025, 0.5},
+                                        std::pair{0.03, 1.6}, std::pair{0.036, 1.6}}) {
+        Snip s{.x = 0.0176, .z = 0.0052};
+        s.length = length;
+        s.angle = angle;
+        SCOPED_TRACE(testing::PrintToString(s));
+        World world = strip(s);
+        const Outcome done = close(world, s, add_scissors(world, s));
+        EXPECT_EQ(topology::components(world.mesh()).count, 1);
+        double between = 0.0;
+        constexpr double part = 1e-5;
+        for (double t = 0.01; t < length * std::cos(angle / 2); t += part)
+            between += part * (std::min(t * std::tan(angle / 2), 0.0048) +
+                               std::min(t * std::tan(angle / 2), 0.0052));
+        EXPECT_LT(done.area, 1.1 * between);
+        EXPECT_GT(done.area, 0.6 * between);
+        EXPECT_FALSE(world.report().tools.at(0).is_in_tissue);
+    }
 }
 
 // Opened half way, they leave a cut that ends there. Closed again, they go on; once more, nothing
