@@ -69,12 +69,12 @@ ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings
         const std::string file_name = spec.surface->path.string();
         io::SurfaceFile file = io::read_surface(spec.surface->path);
         try {
-            kind_of(shape).take_surface(std::move(file.surface), spec.surface->scale, shape,
-                                        file.warnings);
+            kind_of(shape).take_surface(file.surface, spec.surface->scale, shape, file.warnings);
         } catch (const InputError& error) {
             throw InputError(file_name + ": " + error.what());
         }
-        for (const auto& warning : file.warnings) warnings.push_back(file_name + ": " + warning);
+        for (const auto& warning : file.warnings)
+            warnings.emplace_back(file_name).append(": ").append(warning);
     }
     auto surface = cutting::cut_surface_of(shape);
     return {spec.name,          std::move(shape), ToolPath(spec.path, spec.is_obstacle),

@@ -46,12 +46,13 @@ class CutKind final : public ToolKind {
         if (tool.has("scale") && tool.has("plane") && !tool.has("surface"))
             tool.error("scale", "is for surfaces: leave it out");
     }
-    void take_surface(topology::SurfaceData surface, double scale, cutting::ToolShape& shape,
+    void take_surface(const topology::SurfaceData& surface, double scale, cutting::ToolShape& shape,
                       std::vector<std::string>& warnings) const override {
         // They name places with the coordinates of the file.
         for (const auto& defect : cutting::defects_of_surface(surface)) warnings.push_back(defect);
-        for (Vec3& x : surface.points) x *= scale;
-        std::get<cutting::SurfaceCut>(shape).surface = std::move(surface);
+        topology::SurfaceData scaled = surface;
+        for (Vec3& x : scaled.points) x *= scale;
+        std::get<cutting::SurfaceCut>(shape).surface = std::move(scaled);
     }
 };
 

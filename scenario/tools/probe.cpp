@@ -100,11 +100,12 @@ class ProbeKind final : public ToolKind {
         if (key != "surface") return "";
         return "goes into the shape, as in shape = { surface = { file = \"probe.stl\" } }";
     }
-    void take_surface(topology::SurfaceData surface, double scale, cutting::ToolShape& shape,
+    void take_surface(const topology::SurfaceData& surface, double scale, cutting::ToolShape& shape,
                       std::vector<std::string>& warnings) const override {
-        for (Vec3& x : surface.points) x *= scale;
+        topology::SurfaceData scaled = surface;
+        for (Vec3& x : scaled.points) x *= scale;
         bool was_turned = false;
-        cutting::Solid solid = cutting::make_solid(surface, was_turned);
+        cutting::Solid solid = cutting::make_solid(scaled, was_turned);
         if (was_turned) warnings.push_back("its triangles face inwards, and are turned");
         if (const std::string fault = cutting::fault_of(solid); !fault.empty())
             throw InputError(fault);

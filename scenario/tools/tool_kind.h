@@ -68,7 +68,7 @@ class ToolKind {
     /// Reports what is wrong with the times of a tool.
     /// @param end_time  of the run, s; not above 0 if not known
     virtual void check_times(const TableReader& /*tool*/, const ToolSpec& /*spec*/,
-                             double /*end_time*/) const {}
+                             [[maybe_unused]] double end_time) const {}
     /// Returns what to do about a key of another kind; empty: leave it out.
     virtual std::string advice_on(std::string_view /*key*/) const { return ""; }
 
@@ -76,9 +76,9 @@ class ToolKind {
     /// @param surface   as in the file
     /// @param scale     factor of all coordinates
     /// @param warnings  receives warnings, without the name of the file
-    virtual void take_surface(topology::SurfaceData /*surface*/, double /*scale*/,
-                              cutting::ToolShape& /*shape*/,
-                              std::vector<std::string>& /*warnings*/) const {}
+    virtual void take_surface([[maybe_unused]] const topology::SurfaceData& surface,
+                              [[maybe_unused]] double scale, cutting::ToolShape& /*shape*/,
+                              [[maybe_unused]] std::vector<std::string>& warnings) const {}
 
     /// Throws InputError if the tool does not fit the body at rest.
     virtual void require_fit(const ScriptedTool& /*tool*/, const topology::Mesh& /*mesh*/) const {}

@@ -15,7 +15,7 @@ namespace {
 using cutting::Blade;
 
 std::string fault_of(const Blade& blade) {
-    if (const std::string fault = fault_of_line(blade.edge, "edge", "the edge of a blade");
+    if (std::string fault = fault_of_line(blade.edge, "edge", "the edge of a blade");
         !fault.empty())
         return fault;
     if (!(blade.toughness >= 0.0 && std::isfinite(blade.toughness)))

@@ -13,13 +13,11 @@ namespace incise::sim {
 namespace {
 
 std::string fault_of(const cutting::Suture& suture) {
-    if (const std::string fault = fault_of_line(suture.points, "thread", "a suture");
-        !fault.empty())
+    if (std::string fault = fault_of_line(suture.points, "thread", "a suture"); !fault.empty())
         return fault;
     if (!(suture.stiffness > 0.0 && std::isfinite(suture.stiffness)))
         return "its stiffness is " + format_number(suture.stiffness) + " N/m: it must be above 0";
-    if (const std::string fault = fault_of_max_force(suture.max_force); !fault.empty())
-        return fault;
+    if (std::string fault = fault_of_max_force(suture.max_force); !fault.empty()) return fault;
     if (!(suture.reach >= 0.0 && std::isfinite(suture.reach)))
         return "its reach is " + format_number(suture.reach) + " m: it must be 0 or more";
     return "";

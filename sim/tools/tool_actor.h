@@ -70,7 +70,7 @@ class ToolActor {
     virtual void begin_step(double /*dt*/) {}
     /// Returns in how many parts a step must be divided for the motion of the tool.
     /// @param element_size  mean length of an element at rest, m
-    virtual double num_parts(double /*element_size*/) const { return 1.0; }
+    virtual double num_parts([[maybe_unused]] double element_size) const { return 1.0; }
     /// Goes on in a part of a step, from one share of it to another. Returns what the tool does to
     /// the tissue that it touches; null if it touches nothing.
     /// @param moved  how far the tissue may have moved in the step so far, m
