@@ -190,7 +190,10 @@ Order order_of(const Json& json) {
     if (is("open")) return OpenTool{text_in(json, "open")};
     if (is("draw")) return DrawSuture{text_in(json, "draw"), number_in(json, "length")};
     if (is("untie")) return UntieSuture{text_in(json, "untie")};
-    throw InputError("this is no order: must be add, move, withdraw, close, open, draw or untie");
+    std::string keys;
+    for (const auto& [key, value] : json.items()) keys += (keys.empty() ? "" : ", ") + key;
+    throw InputError("this is no order" + (keys.empty() ? "" : ", with the keys " + keys) +
+                     ": must be add, move, withdraw, close, open, draw or untie");
 }
 
 std::string to_json(const Order& order) { return text_of(json_of(order)); }

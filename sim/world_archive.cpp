@@ -14,7 +14,6 @@
 
 namespace incise::sim {
 
-
 namespace {
 
 double read_time(ArchiveReader& ar) {

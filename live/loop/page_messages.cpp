@@ -122,10 +122,12 @@ Json PageMessages::state_of(const LedTool& tool, const LoopState& loop) const {
                   {"tool", live::json_of(tool.definition)},
                   {"present", world.is_tool_present(tool.id)},
                   {"mine", tool.name == loop.in_hand},
-                  {"force", json_of(tool.force)},
-                  {"torque", json_of(tool.torque)},
                   {"pose", json_of(is_suture ? Pose() : world.tool_pose(tool.id))}};
     if (is_suture) state["length"] = world.suture_length(tool.id);
+    if (cutting::feels_force(world.tool(tool.id).shape)) {
+        state["force"] = json_of(tool.force);
+        state["torque"] = json_of(tool.torque);
+    }
     const cutting::ToolTraits& traits = cutting::traits_of(world.tool(tool.id).shape);
     if (traits.holds) state["held"] = world.num_held(tool.id);
     if (traits.closes) state["closed"] = world.is_tool_closed(tool.id);

@@ -45,7 +45,8 @@ class GrasperActor final : public ActorOf<cutting::Grasper> {
 
   private:
     void require_there() const {
-        if (!is_present()) throw InputError("grasper '" + def().name + "' is not there");
+        if (!is_present())
+            throw InputError("grasper '" + def().name + "' is not there: give it a pose first");
     }
     contact::GraspContact& contact_of(const Tissue& tissue) {
         if (!contact_) contact_.emplace(shape(), tissue.contact->size());

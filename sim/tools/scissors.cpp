@@ -61,7 +61,8 @@ class ScissorsActor final : public ActorOf<Scissors> {
 
   private:
     void require_there() const {
-        if (!is_present()) throw InputError("scissors '" + def().name + "' are not there");
+        if (!is_present())
+            throw InputError("scissors '" + def().name + "' are not there: give them a pose first");
     }
     /// Sets where the blades meet: a line across what they enclose when they are open.
     void place_edge(const Pose& at, double closed, std::vector<Vec3>& edge) const {

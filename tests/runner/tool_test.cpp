@@ -96,9 +96,7 @@ TEST(Tool, MayMeetABoxByPathAndReach) {
     const cutting::Blade blade{{{0, -1, 0}, {0, 1, 0}}};
     EXPECT_TRUE(may_meet_unit_box(spec_of(blade, {at(3), there(0.99)})));
     EXPECT_FALSE(may_meet_unit_box(spec_of(blade, {at(3), there(1.01)})));
-    const auto cut_at = [](double x) {
-        return cutting::PlaneCut{{x, 0, 0}, Vec3::UnitX()};
-    };
+    const auto cut_at = [](double x) { return cutting::PlaneCut{{x, 0, 0}, Vec3::UnitX()}; };
     EXPECT_TRUE(may_meet_unit_box(spec_of(cut_at(0.9), {at(0)})));
     EXPECT_FALSE(may_meet_unit_box(spec_of(cut_at(1.1), {at(0)})));
 }
@@ -108,8 +106,7 @@ TEST(Tool, MayMeetWhateverItReachesWhileTurning) {
     for (const double angle : {0.1, 0.5, 1.0, 0.99 * pi}) {
         const Pose down = pose_at({0, 0, 0}, Vec3::UnitZ(), -angle / 2),
                    up = pose_at({0, 3, -2}, Vec3::UnitZ(), angle / 2);
-        ToolSpec spec = spec_of(cutting::Blade{{{1, 0, 0}, {2, 0, 0}}},
-                                {{0.0, down}, {1.0, up}});
+        ToolSpec spec = spec_of(cutting::Blade{{{1, 0, 0}, {2, 0, 0}}}, {{0.0, down}, {1.0, up}});
         std::vector<std::string> warnings;
         const ScriptedTool tool = build_tool(spec, warnings);
         for (int i = 0; i <= 1000; ++i) {

@@ -159,7 +159,8 @@ TEST(ScenarioReader, ReadsTools) {
     const auto s = ScenarioFile(full).read().scenario;
     ASSERT_EQ(s.tools.size(), 3u);
     EXPECT_EQ(s.tools[0].name, "carver_1");
-    const auto& capsule = std::get<cutting::Capsule>(std::get<cutting::Carver>(s.tools[0].shape).shape);
+    const auto& capsule =
+        std::get<cutting::Capsule>(std::get<cutting::Carver>(s.tools[0].shape).shape);
     EXPECT_EQ(capsule.to, Vec3(0, 0, 1));
     EXPECT_EQ(capsule.radius, 0.1);
     EXPECT_EQ(s.tools[0].path[0].value.position, Vec3(1, 2, 3));

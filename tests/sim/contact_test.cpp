@@ -430,11 +430,9 @@ TEST(Contact, RefusesWhatItCannotDo) {
     }
     World world(soft_body());
     const ToolId away = world.add_tool({"jaws", cutting::Grasper{cutting::Sphere{0.01}}});
-    EXPECT_NE(input_error_of([&] { world.close_tool(away); }).find("not there"),
-              std::string::npos);
+    EXPECT_NE(input_error_of([&] { world.close_tool(away); }).find("not there"), std::string::npos);
     const ToolId blade = world.add_tool(scalpel());
-    EXPECT_NE(input_error_of([&] { world.open_tool(blade); }).find("no jaws"),
-              std::string::npos);
+    EXPECT_NE(input_error_of([&] { world.open_tool(blade); }).find("no jaws"), std::string::npos);
     EXPECT_NE(input_error_of([&] {
                   world.add_tool({"jaws", cutting::Grasper{cutting::Sphere{0.01}, 0.0}});
               }).find("force"),
