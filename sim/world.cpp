@@ -70,7 +70,7 @@ topology::BoundarySurface& World::Parts::built_surface() {
     return *surface;
 }
 
-ToolId World::add_tool(ToolDef def) {
+ToolId World::add_tool(const ToolDef& def) {
     parts_->tools.push_back(make_actor(def, parts_->tissue()));
     return parts_->tool_ids.add();
 }

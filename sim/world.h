@@ -183,7 +183,7 @@ class World {
     /// Adds a tool. The tool is present in the world only after a pose has been set.
     /// Throws InputError for an invalid shape, such as a blade with fewer than two points, or a
     /// radius that is not above 0, and for a tool that feels a force in a world without contact.
-    ToolId add_tool(ToolDef def);
+    ToolId add_tool(const ToolDef& def);
     /// Puts a tool at a pose immediately. The tool cuts and pushes nothing on the path to this
     /// pose, and a withdrawal of it no longer holds. A tool that was closed is open. Throws
     /// InputError if its cut ends in the tissue.
