@@ -7,6 +7,7 @@
 #include "incise/sim/tools/edge_cut.h"
 #include "incise/sim/tools/kinds.h"
 #include "incise/sim/tools/shape_faults.h"
+#include "incise/sim/tools/touching_actor.h"
 
 namespace incise::sim {
 
@@ -30,12 +31,14 @@ std::string fault_of(const Blade& blade) {
     return fault_of_snap(blade.snap);
 }
 
-class BladeActor final : public ActorOf<Blade> {
+class BladeActor final : public TouchingActor<Blade, contact::BladeContact> {
   public:
-    explicit BladeActor(const ToolDef& def) : ActorOf(def) { require_none(fault_of(shape())); }
+    explicit BladeActor(const ToolDef& def) : TouchingActor(def) {
+        require_none(fault_of(shape()));
+    }
 
     void require_fit(const Tissue& tissue) const override {
-        ActorOf::require_fit(tissue);
+        TouchingActor::require_fit(tissue);
         if (tissue.contact)
             require_none(contact::fault_of_toughness(shape(), tissue.model.elements().materials(),
                                                      tissue.contact->size()));
@@ -43,16 +46,13 @@ class BladeActor final : public ActorOf<Blade> {
 
     contact::ToolContact* touch(const Tissue& tissue, double from, double to,
                                 double moved) override {
-        if (!contact_) contact_.emplace(shape(), tissue.contact->size());
-        contact_->move(tissue.model, interpolate(pose(), target(), from),
-                       interpolate(pose(), target(), to), [&](const Vec3& x) {
-                           return tissue.cutter.tissue_at(tissue.mesh,
-                                                          tissue.model.mesh_positions(), x, moved);
-                       });
-        return &*contact_;
+        contact_with(tissue).move(tissue.model, interpolate(pose(), target(), from),
+                                  interpolate(pose(), target(), to), [&](const Vec3& x) {
+                                      return tissue.cutter.tissue_at(
+                                          tissue.mesh, tissue.model.mesh_positions(), x, moved);
+                                  });
+        return contact();
     }
-    contact::ToolContact* contact() override { return contact_ ? &*contact_ : nullptr; }
-    void let_go() override { contact_.reset(); }
     bool is_in_tissue(const cutting::Cutter& cutter) const override {
         return edge_.is_in_tissue(cutter);
     }
@@ -81,20 +81,15 @@ class BladeActor final : public ActorOf<Blade> {
     }
     void save_own(ArchiveWriter& ar) const override {
         edge_.save(ar);
-        ar(contact_.has_value());
-        if (contact_) contact_->save(ar);
+        TouchingActor::save_own(ar);
     }
     void restore_own(ArchiveReader& ar, const Tissue& tissue) override {
         if (!edge_.restore(ar, tissue.cutter, splits(), shape().edge.size()))
             refuse("has a cut of another one");
-        if (!ar.read<bool>()) return;
-        if (!tissue.contact) refuse("touches tissue, and there is no contact");
-        contact_.emplace(shape(), tissue.contact->size());
-        contact_->restore(ar);
+        restore_contact(ar, tissue);
     }
 
     EdgeCut edge_;
-    std::optional<contact::BladeContact> contact_;  // of a blade that feels a force
 };
 
 }  // namespace

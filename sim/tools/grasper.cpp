@@ -4,21 +4,22 @@
 #include "incise/contact/grasp_contact.h"
 #include "incise/sim/tools/kinds.h"
 #include "incise/sim/tools/shape_faults.h"
+#include "incise/sim/tools/touching_actor.h"
 
 namespace incise::sim {
 
 namespace {
 
-class GrasperActor final : public ActorOf<cutting::Grasper> {
+class GrasperActor final : public TouchingActor<cutting::Grasper, contact::GraspContact> {
   public:
-    explicit GrasperActor(const ToolDef& def) : ActorOf(def) {
+    explicit GrasperActor(const ToolDef& def) : TouchingActor(def) {
         const std::string fault = fault_of_max_force(shape().max_force);
         require_none(fault.empty() ? fault_of_shape(shape().jaws) : fault);
     }
 
     std::size_t close(const Tissue& tissue) override {
         require_there();
-        contact_of(tissue).close(tissue.model, tissue.contact->surface().triangles, pose());
+        contact_with(tissue).close(tissue.model, tissue.contact->surface().triangles, pose());
         is_closed_ = true;
         return num_held();
     }
@@ -33,13 +34,12 @@ class GrasperActor final : public ActorOf<cutting::Grasper> {
     }
 
     contact::ToolContact* touch(const Tissue& tissue, double from, double to, double) override {
-        contact_of(tissue).move(interpolate(pose(), target(), from),
-                                interpolate(pose(), target(), to));
-        return &*contact_;
+        contact_with(tissue).move(interpolate(pose(), target(), from),
+                                  interpolate(pose(), target(), to));
+        return contact();
     }
-    contact::ToolContact* contact() override { return contact_ ? &*contact_ : nullptr; }
     void let_go() override {
-        contact_.reset();
+        TouchingActor::let_go();
         is_closed_ = false;
     }
 
@@ -48,22 +48,17 @@ class GrasperActor final : public ActorOf<cutting::Grasper> {
         if (!is_present())
             throw InputError("grasper '" + def().name + "' is not there: give it a pose first");
     }
-    contact::GraspContact& contact_of(const Tissue& tissue) {
-        if (!contact_) contact_.emplace(shape(), tissue.contact->size());
-        return *contact_;
-    }
     void leave(const Tissue&, const CarryOut&) override { is_closed_ = false; }
     void save_own(ArchiveWriter& ar) const override {
-        ar(is_closed_, contact_.has_value());
-        if (contact_) contact_->save(ar);
+        ar(is_closed_);
+        TouchingActor::save_own(ar);
     }
     void restore_own(ArchiveReader& ar, const Tissue& tissue) override {
         ar(is_closed_);
-        if (ar.read<bool>()) contact_of(tissue).restore(ar, tissue.model);
+        restore_contact(ar, tissue, tissue.model);
     }
 
     bool is_closed_ = false;
-    std::optional<contact::GraspContact> contact_;
 };
 
 }  // namespace

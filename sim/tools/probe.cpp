@@ -8,6 +8,7 @@
 #include "incise/cutting/tools/probe_shape.h"
 #include "incise/sim/tools/kinds.h"
 #include "incise/sim/tools/shape_faults.h"
+#include "incise/sim/tools/touching_actor.h"
 
 namespace incise::sim {
 
@@ -19,9 +20,9 @@ std::string fault_of(const cutting::Probe& probe) {
     return fault_of_shape(probe.shape);
 }
 
-class ProbeActor final : public ActorOf<cutting::Probe> {
+class ProbeActor final : public TouchingActor<cutting::Probe, contact::RigidContact> {
   public:
-    explicit ProbeActor(const ToolDef& def) : ActorOf(def) {
+    explicit ProbeActor(const ToolDef& def) : TouchingActor(def) {
         require_none(fault_of(shape()));
         half_width_ = cutting::half_width_of(shape().shape);
         reach_ = cutting::reach_of(shape().shape);
@@ -36,26 +37,17 @@ class ProbeActor final : public ActorOf<cutting::Probe> {
         return std::ceil(move / (most * std::min(half_width_, element_size)));
     }
     contact::ToolContact* touch(const Tissue& tissue, double from, double to, double) override {
-        if (!contact_) contact_.emplace(shape(), tissue.contact->size());
-        contact_->move(interpolate(pose(), target(), from), interpolate(pose(), target(), to));
-        return &*contact_;
+        contact_with(tissue).move(interpolate(pose(), target(), from),
+                                  interpolate(pose(), target(), to));
+        return contact();
     }
-    contact::ToolContact* contact() override { return contact_ ? &*contact_ : nullptr; }
-    void let_go() override { contact_.reset(); }
 
   private:
-    void save_own(ArchiveWriter& ar) const override {
-        ar(contact_.has_value());
-        if (contact_) contact_->save(ar);
-    }
     void restore_own(ArchiveReader& ar, const Tissue& tissue) override {
-        if (!ar.read<bool>()) return;
-        contact_.emplace(shape(), tissue.contact->size());
-        contact_->restore(ar, tissue.contact->surface());
+        restore_contact(ar, tissue, tissue.contact->surface());
     }
 
     double half_width_ = 0.0, reach_ = 0.0;  // m: see probe_shape.h
-    std::optional<contact::RigidContact> contact_;
 };
 
 }  // namespace

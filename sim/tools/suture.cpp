@@ -7,6 +7,7 @@
 #include "incise/contact/suture_contact.h"
 #include "incise/sim/tools/kinds.h"
 #include "incise/sim/tools/shape_faults.h"
+#include "incise/sim/tools/touching_actor.h"
 
 namespace incise::sim {
 
@@ -24,13 +25,14 @@ std::string fault_of(const cutting::Suture& suture) {
 }
 
 /// Without contact it is never made.
-class SutureActor final : public ActorOf<cutting::Suture> {
+class SutureActor final : public TouchingActor<cutting::Suture, contact::SutureContact> {
   public:
-    explicit SutureActor(const ToolDef& def) : ActorOf(def) { require_none(fault_of(shape())); }
+    explicit SutureActor(const ToolDef& def) : TouchingActor(def) {
+        require_none(fault_of(shape()));
+    }
 
     std::size_t tie(const Tissue& tissue) override {
-        contact_.emplace(shape(), tissue.contact->size());
-        contact_->tie(tissue.model);
+        contact_with(tissue).tie(tissue.model);
         set_present(true);
         length_ = target_length_ = contact_->length();
         return num_points();
@@ -53,27 +55,22 @@ class SutureActor final : public ActorOf<cutting::Suture> {
         if (contact_) contact_->draw(std::lerp(length_, target_length_, to));
         return contact();
     }
-    contact::ToolContact* contact() override { return contact_ ? &*contact_ : nullptr; }
-    void let_go() override { contact_.reset(); }
 
   private:
     std::size_t num_points() const { return contact_ ? contact_->num_held() : 0; }
     void arrive() override { length_ = target_length_; }
     void save_own(ArchiveWriter& ar) const override {
-        ar(length_, target_length_, contact_.has_value());
-        if (contact_) contact_->save(ar);
+        ar(length_, target_length_);
+        TouchingActor::save_own(ar);
     }
     void restore_own(ArchiveReader& ar, const Tissue& tissue) override {
         ar(length_, target_length_);
         if (!(length_ >= 0.0 && target_length_ >= 0.0 && std::isfinite(length_ + target_length_)))
             require_none("its thread has no length");
-        if (!ar.read<bool>()) return;
-        contact_.emplace(shape(), tissue.contact->size());
-        contact_->restore(ar, tissue.model);
+        restore_contact(ar, tissue, tissue.model);
     }
 
     double length_ = 0.0, target_length_ = 0.0;  // now and at the end of the next step, m
-    std::optional<contact::SutureContact> contact_;
 };
 
 }  // namespace

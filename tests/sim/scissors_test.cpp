@@ -37,12 +37,13 @@ struct Snip {
     double snap = cutting::default_snap;
     int num_steps = 7;     ///< while they close
     double length = 0.06;  ///< of the blades, from y = -0.01 on, m
+    double scale = 1.0;    ///< of the strip and of all lengths here
     double angle = 1.6;    ///< rad
 
     friend std::ostream& operator<<(std::ostream& out, const Snip& s) {
         return out << "solver " << static_cast<int>(s.solver) << ", x " << s.x << ", z " << s.z
                    << ", jitter " << s.jitter << ", snap " << s.snap << ", steps " << s.num_steps
-                   << ", length " << s.length << ", angle " << s.angle;
+                   << ", length " << s.length << ", angle " << s.angle << ", scale " << s.scale;
     }
 };
 
@@ -55,14 +56,15 @@ World strip(const Snip& s) {
         for (int k = 0; k < 3; ++k)
             if (x[k] > 1e-9 && x[k] < strip_size[k] - 1e-9)
                 x[k] += s.jitter * spacing * random.uniform(-0.5, 0.5);
+    for (Vec3& x : mesh.points) x *= s.scale;
     def.mesh = std::move(mesh);
     def.materials = {{1000.0, physics::HyperElasticLinks{physics::NeoHookean{2e3, 6e3}}}};
     def.damping = 2.0;
     def.solver = s.solver;
     World world(std::move(def));
     world.add_constraint(
-        {.name = "ends", .nodes = physics::VertexSet(nodes_where(world, [](const Vec3& x) {
-                             return x.x() == 0.0 || x.x() == strip_size.x();
+        {.name = "ends", .nodes = physics::VertexSet(nodes_where(world, [&](const Vec3& x) {
+                             return x.x() == 0.0 || x.x() == s.scale * strip_size.x();
                          }))});
     return world;
 }
@@ -73,7 +75,7 @@ Pose across_strip(const Snip& s) {
     rotation.col(0) = Vec3::UnitZ();
     rotation.col(1) = -Vec3::UnitX();
     rotation.col(2) = -Vec3::UnitY();
-    return {Eigen::Quaterniond(rotation).normalized(), {s.x, -0.01, s.z}};
+    return {Eigen::Quaterniond(rotation).normalized(), s.scale * Vec3(s.x, -0.01, s.z)};
 }
 
 double step_of(const World& world, const Snip& s) {
@@ -83,7 +85,7 @@ double step_of(const World& world, const Snip& s) {
 ToolId add_scissors(World& world, const Snip& s) {
     const double closing_time = s.num_steps * step_of(world, s);
     const ToolId tool =
-        world.add_tool({"scissors", Scissors{s.length, s.angle, closing_time, s.snap}});
+        world.add_tool({"scissors", Scissors{s.scale * s.length, s.angle, closing_time, s.snap}});
     world.place_tool(tool, across_strip(s));
     return tool;
 }
@@ -158,26 +160,32 @@ TEST(Scissors, MayStopInPlanesOfTheMesh) {
 }
 
 // Blades that are too short leave the far side joined. The area is that of the triangle between
-// them, as far as it is in the strip, to half an element at its rim.
+// them, as far as it is in the strip. Its sides and its end are exact to an element each.
 TEST(Scissors, CutNoMoreThanIsBetweenThem) {
-    for (const auto& [length, angle] : {std::pair{0.02, 0.5}, std::pair{0.025, 0.5},
-                                        std::pair{0.03, 1.6}, std::pair{0.036, 1.6}}) {
-        Snip s{.x = 0.0176, .z = 0.0052};
-        s.length = length;
-        s.angle = angle;
-        SCOPED_TRACE(testing::PrintToString(s));
-        World world = strip(s);
-        const Outcome done = close(world, s, add_scissors(world, s));
-        EXPECT_EQ(topology::components(world.mesh()).count, 1);
-        double between = 0.0;
-        constexpr double part = 1e-5;
-        for (double t = 0.01; t < length * std::cos(angle / 2); t += part)
-            between += part * (std::min(t * std::tan(angle / 2), 0.0048) +
-                               std::min(t * std::tan(angle / 2), 0.0052));
-        EXPECT_LT(done.area, 1.1 * between);
-        EXPECT_GT(done.area, 0.6 * between);
-        EXPECT_FALSE(world.report().tools.at(0).is_in_tissue);
-    }
+    for (const auto& [length, angle] :
+         {std::pair{0.02, 0.5}, std::pair{0.025, 0.5}, std::pair{0.03, 1.6}, std::pair{0.036, 1.6}})
+        for (const double scale : {1.0, 10.0}) {
+            Snip s{.x = 0.0176, .z = 0.0052};
+            s.length = length;
+            s.angle = angle;
+            s.scale = scale;
+            SCOPED_TRACE(testing::PrintToString(s));
+            World world = strip(s);
+            const Outcome done = close(world, s, add_scissors(world, s));
+            EXPECT_EQ(topology::components(world.mesh()).count, 1);
+            double between = 0.0, rim = 0.0;
+            constexpr double part = 1e-5;
+            for (double t = 0.01; t < length * std::cos(angle / 2); t += part) {
+                const double half = t * std::tan(angle / 2);
+                const double below = std::min(half, 0.0052), above = std::min(half, 0.0048);
+                between += part * (below + above);
+                for (const double side : {0.0052, 0.0048})
+                    if (half < side) rim += part / std::cos(angle / 2);
+                if (t + part >= length * std::cos(angle / 2)) rim += below + above;
+            }
+            EXPECT_NEAR(done.area / (scale * scale), between, 0.5 * spacing * rim);
+            EXPECT_FALSE(world.report().tools.at(0).is_in_tissue);
+        }
 }
 
 // Opened half way, they leave a cut that ends there. Closed again, they go on; once more, nothing
@@ -321,6 +329,27 @@ TEST(Scissors, GoOnWithTheSameBitsAfterRestoreAndUndo) {
             EXPECT_EQ(world.save(), states[i]) << i;
         }
     }
+}
+
+// They can only divide, and tell which cell they cannot.
+TEST(Scissors, StopAtAHexahedron) {
+    WorldDef def = soft_body();
+    def.mesh = topology::box_mesh(topology::CellKind::hexahedron, Vec3::Zero(),
+                                  Vec3::Constant(size), {4, 4, 4});
+    def.materials = {{1000.0, physics::HybridSprings{400.0, 400.0}}};
+    World world(std::move(def));
+    const ToolId tool = world.add_tool({"scissors", Scissors{0.2, 1.0, 0.01}});
+    world.place_tool(tool, {across_strip({}).rotation, {0.051, -0.05, 0.05}});
+    world.close_tool(tool);
+    try {
+        for (int i = 0; i < 1000; ++i) world.step(0.5 * world.stable_step());
+        FAIL();
+    } catch (const ToolError& error) {
+        EXPECT_EQ(error.tool, tool);
+        EXPECT_TRUE(error.undividable.is_valid());
+        EXPECT_THAT(error.what(), HasSubstr("tool 'scissors'"));
+    }
+    EXPECT_EQ(world.mesh().num_elements(), 64U);
 }
 
 TEST(Scissors, AreRefusedIfTheyCannotBe) {
