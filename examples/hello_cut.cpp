@@ -36,8 +36,9 @@ int main() {
     double cut_area = 0.0;
     for (int i = 1; i <= 500; ++i) {
         const double time = 2e-4 * i;
-        world.set_tool_pose(scalpel, interpolate(above, below, time / 0.1));
-        for (const sim::Edit& edit : world.step_to(time).edits) cut_area += edit.record.cut_area;
+        const Pose there = interpolate(above, below, time / 0.1);
+        const auto& report = world.step_to(time, sim::StepInputs().move(scalpel, there));
+        for (const sim::Edit& edit : report.edits) cut_area += edit.record.cut_area;
     }
 
     const auto& edited = world.mesh();

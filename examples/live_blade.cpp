@@ -67,14 +67,13 @@ int main(int argc, char** argv) {
     Picture picture;
     picture.update(world);
     const std::size_t num_triangles = picture.triangles.size();
-    world.set_tool_pose(scalpel, pose_of_hand(0.0));
+    world.place_tool(scalpel, pose_of_hand(0.0));
     constexpr double frame = 1.0 / 60.0;
     for (int i = 1; i <= 6; ++i) {
         // As many stable steps as one frame takes; the hand goes evenly meanwhile.
         while (world.time() < i * frame) {
             const double end = std::min(world.time() + 0.8 * world.stable_step(), i * frame);
-            world.set_tool_pose(scalpel, pose_of_hand(end));
-            world.step_to(end);
+            world.step_to(end, sim::StepInputs().move(scalpel, pose_of_hand(end)));
         }
         picture.num_uploaded = 0;
         picture.update(world);

@@ -145,8 +145,7 @@ std::vector<std::string> Session::execute(const Order& order) {
                 world.open_tool(tool_in_hand(it.name).id);
             } else if constexpr (std::is_same_v<T, DrawSuture>) {
                 LedTool& thread = tool(it.name);
-                world.set_suture_length(thread.id, it.length);  // refuses what cannot be
-                world.set_suture_length(thread.id, world.suture_length(thread.id));
+                world.require_possible(sim::StepInputs().draw(thread.id, it.length));
                 thread.length = it.length;
             } else {
                 world.untie_suture(tool(it.name).id);
@@ -209,52 +208,34 @@ void Session::move(const MoveTool& order) {
 
 bool Session::tick(const std::function<bool()>& is_to_stop) {
     const double begin = world().time(), end = static_cast<double>(num_ticks_ + 1) * tick_;
-    poses_before_.clear();
-    for (LedTool& tool : tools_) {
-        poses_before_.push_back(is_suture(tool) ? Pose() : world().tool_pose(tool.id));
-        tool.force = tool.torque = Vec3::Zero();
-    }
+    set_targets();
+    player_.begin(world());
     while (world().time() < end) {
         const auto step = simulation_.next_step(end);
-        lead_tools(step, begin, end);
-        simulation_.step(step);
-        add_forces(world().report().tools, (step.to - step.from) / tick_);
+        simulation_.step(step, player_.inputs((step.to - begin) / (end - begin), step.to >= end));
+        player_.add(world().report());
         if (is_to_stop && world().time() < end && is_to_stop()) return false;
     }
+    player_.end();
+    for (LedTool& tool : tools_)
+        if (tool.is_to_be_withdrawn) tool.is_in_hand = tool.is_to_be_withdrawn = false;
     ++num_ticks_;
     last_orders_ = std::exchange(orders_, {});
     return true;
 }
 
-void Session::lead_tools(runner::Simulation::Interval step, double begin, double end) {
-    const bool is_last = step.to >= end;
-    for (std::size_t i = 0; i < tools_.size(); ++i) {
-        LedTool& tool = tools_[i];
+/// Tells the player where the tools are to be at the end of the tick.
+void Session::set_targets() {
+    sim::StepInputs& targets = player_.targets();
+    targets.clear();
+    for (const LedTool& tool : tools_) {
         if (!tool.is_in_hand) continue;
-        const double part = (step.to - begin) / (end - begin);
-        if (is_suture(tool)) {
-            if (!world().is_suture_tied(tool.id)) continue;
-            const double now = world().suture_length(tool.id), rest = end - step.from;
-            if (now != tool.length)
-                simulation_.world().set_suture_length(
-                    tool.id, is_last ? tool.length
-                                     : std::lerp(now, tool.length, (step.to - step.from) / rest));
-            continue;
+        if (!is_suture(tool)) {
+            targets.move(tool.id, tool.pose);
+            if (tool.is_to_be_withdrawn) targets.withdraw(tool.id);
+        } else if (world().is_suture_tied(tool.id)) {
+            targets.draw(tool.id, tool.length);
         }
-        simulation_.world().set_tool_pose(
-            tool.id, is_last ? tool.pose : interpolate(poses_before_[i], tool.pose, part));
-        if (!is_last || !tool.is_to_be_withdrawn) continue;
-        simulation_.world().withdraw_tool(tool.id);
-        tool.is_in_hand = tool.is_to_be_withdrawn = false;
-    }
-}
-
-void Session::add_forces(std::span<const sim::ToolState> states, double weight) {
-    for (const sim::ToolState& state : states) {
-        const auto tool = std::ranges::find(tools_, state.tool, &LedTool::id);
-        if (tool == tools_.end()) continue;
-        tool->force += weight * state.force;
-        tool->torque += weight * state.torque;
     }
 }
 
@@ -268,6 +249,7 @@ void Session::undo(const Moment& moment) {
     tools_ = moment.tools;
     orders_ = moment.orders;
     last_orders_.clear();
+    player_ = {};
 }
 
 void Session::reset() {
@@ -277,6 +259,7 @@ void Session::reset() {
     tools_.clear();
     orders_.clear();
     last_orders_.clear();
+    player_ = {};
 }
 
 std::uint64_t Session::checksum() const {

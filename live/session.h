@@ -15,6 +15,7 @@
 #include "incise/runner/simulation.h"
 #include "incise/scenario/held_tool.h"
 #include "incise/scenario/scenario.h"
+#include "incise/sim/tool_player.h"
 #include "incise/sim/world.h"
 
 namespace incise::live {
@@ -31,8 +32,6 @@ struct LedTool {
     double length = 0.0;     ///< of a thread at the end of the next tick, m
     bool is_in_hand = true;  ///< until it has been withdrawn
     bool is_to_be_withdrawn = false;
-    /// What the tissue exerts on it, mean over the last tick: N, and N m about its origin.
-    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 };
 
 /// A scenario that advances tick by tick. A tick is made of the steps that the body needs. Tools
@@ -82,6 +81,8 @@ class Session {
     std::span<const LedTool> tools() const { return tools_; }
     /// Returns a tool by name, or null.
     const LedTool* find(const std::string& name) const;
+    /// Returns what tissue exerted on the tools, those of the scenario too, over the last tick.
+    const sim::ToolForces& tool_forces() const { return player_.forces(); }
 
     /// A moment between two ticks.
     struct Moment {
@@ -111,8 +112,7 @@ class Session {
     LedTool& tool(const std::string& name);
     LedTool& tool_in_hand(const std::string& name);
     void require_near(const cutting::ToolShape& shape, const Pose& from, const Pose& to) const;
-    void lead_tools(runner::Simulation::Interval step, double begin, double end);
-    void add_forces(std::span<const sim::ToolState> states, double weight);
+    void set_targets();
 
     double tick_;
     std::uint64_t last_tick_;
@@ -122,7 +122,7 @@ class Session {
     double element_size_;
     Eigen::AlignedBox3d box_;  // of the body at the start
     std::vector<LedTool> tools_;
-    std::vector<Pose> poses_before_;           // of the tools, at the beginning of the tick
+    sim::ToolPlayer player_;                   // of a tick
     std::vector<Order> orders_, last_orders_;  // since the last tick, and those before it
     std::uint64_t num_ticks_ = 0;
 };

@@ -30,7 +30,7 @@ struct UsageError : std::runtime_error {
 /// A world with what Python needs to know of it. All members are used with the GIL held, except
 /// the driver while `is_busy` is set.
 struct Handle {
-    Handle(const scenario::Scenario& scenario, bool is_endless) : driver(scenario, is_endless) {}
+    explicit Handle(const scenario::Scenario& scenario) : driver(scenario) {}
 
     WorldDriver driver;
     bool is_busy = false;         ///< a thread uses the driver without the GIL

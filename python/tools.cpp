@@ -28,12 +28,20 @@ WorldDriver& driver_of(const Tool& tool) {
     return driver;
 }
 
-const NamedConstraint& find(const Constraint& constraint) {
-    const auto& all = driver_of(constraint.world).constraints();
-    const auto found = std::ranges::find(all, constraint.name, &NamedConstraint::name);
-    if (found == all.end())
+/// Returns the driver of the world of a constraint. Throws InputError if it was released.
+WorldDriver& driver_of(const Constraint& constraint) {
+    WorldDriver& driver = python::driver_of(constraint.world);
+    try {
+        driver.constraint(constraint.name);
+    } catch (const InputError&) {
         throw InputError("constraint '" + constraint.name + "' is no longer in its world");
-    return *found;
+    }
+    return driver;
+}
+
+const physics::Reaction& reaction_of(const Constraint& constraint) {
+    const WorldDriver& driver = driver_of(constraint);
+    return driver.world().reaction(driver.constraint(constraint.name));
 }
 
 void register_tool(py::module_& module) {
@@ -78,21 +86,21 @@ None for a tool that is not there.)")
 Raises InputError for a blade whose cut ends in the tissue: withdraw it first.)")
         .def_property_readonly(
             "force", held(+[](const Tool& tool) {
-                return array_of(driver_of(tool).tool_state(tool.id).force);
+                return array_of(driver_of(tool).tool_forces().of(tool.id).force);
             }),
-            R"(What the tissue exerted on the tool in the last step, N. Shape (3,), a copy.
+            R"(What the tissue exerted on the tool in the last call, N. Shape (3,), a copy.
 
-In the frame of the world, mean over the step. Zero for carvers, cuts, and blades without a
+In the frame of the world, mean over the last call of step() or run_until(), as the tool_forces of
+its StepReport. Zero for carvers, cuts, and blades without a
 toughness. For a suture it is the force on its thread at its first point; its length is the tension.)")
         .def_property_readonly(
             "torque", held(+[](const Tool& tool) {
-                return array_of(driver_of(tool).tool_state(tool.id).torque);
+                return array_of(driver_of(tool).tool_forces().of(tool.id).torque);
             }),
             "The same for the torque about the origin of the tool, N m. Shape (3,), a copy.")
         .def_property_readonly(
-            "is_in_tissue", held(+[](const Tool& tool) {
-                return driver_of(tool).tool_state(tool.id).is_in_tissue;
-            }),
+            "is_in_tissue",
+            held(+[](const Tool& tool) { return driver_of(tool).is_in_tissue(tool.id); }),
             "True if the tool divides elements and its cut ended in one in the last step.")
         .def("withdraw", held(+[](const Tool& tool) { driver_of(tool).withdraw_tool(tool.id); }),
              R"(Take the tool away at the end of the next call of step() or run_until().
@@ -148,38 +156,34 @@ Those of a scenario hold or move nodes as it says. A grasp carries nodes with a 
     type.def_property_readonly("name", held(&Constraint::name), "The name of the constraint.")
         .def_property_readonly(
             "force", held(+[](const Constraint& constraint) {
-                const auto id = find(constraint).id;
-                return array_of(driver_of(constraint.world).world().reaction(id).force);
+                return array_of(reaction_of(constraint).force);
             }),
             R"(The force that the constraint exerted on the body, mean over the last step, N. Shape (3,).
 
 A grasp on moving tissue stops it within one step: leave out that step, or take a mean.)")
         .def_property_readonly(
             "torque", held(+[](const Constraint& constraint) {
-                const auto id = find(constraint).id;
-                return array_of(driver_of(constraint.world).world().reaction(id).moment);
+                return array_of(reaction_of(constraint).moment);
             }),
             "The moment that it exerted about the origin of the world, N m. Shape (3,), a copy.")
-        .def_property_readonly("is_grasp", held(+[](const Constraint& constraint) {
-                                   return find(constraint).pose.has_value();
-                               }),
-                               "True for the result of World.grasp().")
+        .def_property_readonly(
+            "is_grasp", held(+[](const Constraint& constraint) {
+                return driver_of(constraint).grasp_pose(constraint.name).has_value();
+            }),
+            "True for the result of World.grasp().")
         .def_property(
             "pose", held(+[](const Constraint& constraint) {
-                const NamedConstraint& found = find(constraint);
-                return found.target ? found.target : found.pose;
+                return driver_of(constraint).grasp_pose(constraint.name);
             }),
             held(+[](const Constraint& constraint, const py::object& pose) {
-                find(constraint);
-                driver_of(constraint.world).set_grasp_target(constraint.name, given_pose(pose));
+                driver_of(constraint).set_grasp_target(constraint.name, given_pose(pose));
             }),
             R"(Where the frame of a grasp is to be at the end of the next call of step() or run_until().
 
 The nodes go with the frame. None for a constraint that is no grasp; setting it then raises
 InputError.)")
         .def("release", held(+[](const Constraint& constraint) {
-                 find(constraint);
-                 driver_of(constraint.world).release(constraint.name);
+                 driver_of(constraint).release(constraint.name);
              }),
              "Remove the constraint. Its nodes keep their velocities.")
         .def("__repr__", held(+[](const Constraint& constraint) {
@@ -195,11 +199,8 @@ void register_load(py::module_& module) {
     forbid_copies(type, "keep its name");
     type.def_property_readonly("name", held(&Load::name), "The name of the load.")
         .def_property(
-            "factor", held(+[](const Load& load) {
-                WorldDriver& driver = driver_of(load.world);
-                const auto& curve = driver.load(load.name).factor;
-                return curve.is_empty() ? 1.0 : curve.at(driver.world().time());
-            }),
+            "factor",
+            held(+[](const Load& load) { return driver_of(load.world).load_factor(load.name); }),
             held(+[](const Load& load, double factor) {
                 driver_of(load.world).set_load_factor(load.name, factor);
             }),

@@ -38,7 +38,7 @@ py::dict ledger(const World& world) {
     const double step = driver.world().num_steps() > 0 ? driver.last_step() : driver.next_step();
     py::dict dict;
     for (const auto& [name, value] :
-         runner::summary_quantities(driver.world(), step, driver.edits()))
+         runner::summary_quantities(driver.world(), step, driver.tool_forces(), driver.edits()))
         dict[py::str(name)] = value;
     return dict;
 }
@@ -166,7 +166,7 @@ Raises InputError with all faults of scenario and mesh. What is unusual becomes 
             "end_time",
             [](const World& world) -> std::optional<double> {
                 const WorldDriver& driver = driver_of(world);
-                if (driver.is_endless()) return std::nullopt;
+                if (driver.scenario().dynamics.is_endless) return std::nullopt;
                 return driver.scenario().dynamics.end_time;
             },
             "The end time of the scenario, s. None if it says none. The world can run on.")
@@ -348,8 +348,10 @@ are held too. Raises InputError if another constraint holds a node otherwise.)")
             "constraints",
             [](const World& world) {
                 py::dict dict;
-                for (const NamedConstraint& constraint : driver_of(world).constraints())
-                    dict[py::str(constraint.name)] = Constraint{world, constraint.name};
+                const physics::Model& model = driver_of(world).world().model();
+                for (std::size_t i = 0; i < model.num_constraints(); ++i)
+                    dict[py::str(model.constraint_name(i))] =
+                        Constraint{world, model.constraint_name(i)};
                 return dict;
             },
             "All constraints by name: a dict of Constraint, with their reaction forces.")

@@ -28,25 +28,18 @@ std::string at_step(const scenario::Scenario& scenario, std::uint64_t step, doub
 
 }  // namespace
 
-WorldDriver::WorldDriver(const scenario::Scenario& scenario, bool is_endless)
-    : WorldDriver(scenario, scenario::build_body(scenario), is_endless) {}
+WorldDriver::WorldDriver(const scenario::Scenario& scenario)
+    : WorldDriver(scenario, scenario::build_body(scenario)) {}
 
-WorldDriver::WorldDriver(scenario::Scenario scenario, scenario::Body body, bool is_endless)
+WorldDriver::WorldDriver(scenario::Scenario scenario, scenario::Body body)
     : scenario_(std::move(scenario)),
-      is_endless_(is_endless),
       warnings_(std::move(body.warnings)),
       world_(scenario::make_world(scenario_, std::move(body.mesh), std::move(body.materials),
                                   std::move(body.boundary_conditions), warnings_)),
-      scripts_(world_, std::move(body.tools)),
-      led_(scripts_.size()) {
-    for (std::size_t i = 0; i < world_.model().num_constraints(); ++i)
-        constraints_.push_back(
-            {world_.model().constraint_name(i), world_.constraints()[i], {}, {}});
-    for (const physics::Load& load : world_.model().loads().all()) loads_.push_back(load.name);
+      run_warnings_(world_, scenario_.dynamics),
+      scripts_(world_, std::move(body.tools)) {
     note_tools();
-    if (scenario_.dynamics.mode == scenario::Mode::dynamic && is_endless_)
-        scenario_.dynamics.end_time = 0.0;  // bounds no number of steps
-    next_step();                            // refuses a fixed step that is too large
+    next_step();  // refuses a fixed step that is too large
 }
 
 void WorldDriver::note_tools() {
@@ -66,54 +59,13 @@ double WorldDriver::next_step() const {
 
 // --- Steps
 
-void WorldDriver::begin_call() {
-    for (std::size_t i = scripts_.size(); i < led_.size(); ++i) {
-        Led& led = led_[i];
-        const sim::ToolId tool = world_.tools()[i];
-        led.from.reset();
-        if (led.target && world_.is_tool_present(tool)) led.from = world_.tool_pose(tool);
-        led.length_from.reset();
-        if (led.length_target) led.length_from = world_.suture_length(tool);
-    }
-    for (NamedConstraint& grasp : constraints_) grasp.from = grasp.pose;
-}
-
-/// Sets where the tools and grasps are at the end of the next step.
-/// @param part  of the way from the beginning of the call to its end
-void WorldDriver::lead(double part, bool is_last) {
-    for (std::size_t i = scripts_.size(); i < led_.size(); ++i) {
-        const Led& led = led_[i];
-        const sim::ToolId tool = world_.tools()[i];
-        if (led.target) {
-            const bool is_there = is_last || !led.from;
-            world_.set_tool_pose(
-                tool, is_there ? *led.target : interpolate(*led.from, *led.target, part));
-        }
-        if (led.length_target)
-            world_.set_suture_length(
-                tool, is_last ? *led.length_target
-                              : std::lerp(*led.length_from, *led.length_target, part));
-        if (led.leaves && is_last && world_.is_tool_present(tool)) world_.withdraw_tool(tool);
-    }
-    for (NamedConstraint& grasp : constraints_)
-        if (grasp.target) {
-            grasp.pose = is_last ? *grasp.target : interpolate(*grasp.from, *grasp.target, part);
-            world_.set_grasp_pose(grasp.id, *grasp.pose);
-        }
-}
-
-void WorldDriver::end_call() {
-    for (Led& led : led_) led = {};
-    for (NamedConstraint& grasp : constraints_) grasp.target.reset();
-}
-
 void WorldDriver::make_step(double end, double part, bool is_last, Report& report) {
     const double from = world_.time();
     const std::uint64_t number = world_.num_steps() + 1;
-    scripts_.move(world_, from, end, warnings_);
-    lead(part, is_last);
+    inputs_ = player_.inputs(part, is_last);
+    scripts_.lead(world_, from, end, inputs_, warnings_);
     try {
-        world_.step_to(end);
+        world_.step_to(end, inputs_);
     } catch (const sim::ToolError& error) {
         note(report);
         std::string text = error.what();
@@ -142,26 +94,17 @@ void WorldDriver::note(Report& report) {
         edits_.push_back(edit.record);
         report.edits.push_back(edit.record);
     }
-    const double dt = step.to - step.from;
-    auto row = report.tools->ids.begin();
-    for (const sim::ToolState& tool : step.tools) {
-        row = std::find(row, report.tools->ids.end(), tool.tool);
-        if (row == report.tools->ids.end()) {
-            row = report.tools->ids.begin();
-            continue;
-        }
-        const auto i = static_cast<std::size_t>(row - report.tools->ids.begin());
-        report.forces[i] += dt * tool.force;
-        report.torques[i] += dt * tool.torque;
-    }
+    player_.add(step);
+    run_warnings_.add_step(world_, warnings_);
 }
 
-/// Turns the sums of a report into means.
+/// Adds the means of a call to its report.
 void WorldDriver::finish(Report& report) const {
-    const double duration = report.to - report.from;
-    if (!(duration > 0.0)) return;
-    for (Vec3& force : report.forces) force /= duration;
-    for (Vec3& torque : report.torques) torque /= duration;
+    for (const sim::ToolId tool : report.tools->ids) {
+        const auto [force, torque] = player_.forces().of(tool);
+        report.forces.push_back(force);
+        report.torques.push_back(torque);
+    }
 }
 
 /// Makes steps. next_end(i) returns the end of step i, which part of the call it ends, and whether
@@ -173,9 +116,7 @@ Report WorldDriver::call(NextEnd next_end, const Poll& poll) {
     Report report;
     report.from = report.to = world_.time();
     report.tools = feeling_;
-    report.forces.assign(feeling_->ids.size(), Vec3::Zero());
-    report.torques = report.forces;
-    begin_call();
+    player_.begin(world_);
     auto polled = Clock::now();
     for (std::uint64_t i = 0;; ++i) {
         const auto [end, part, is_last] = next_end(i);
@@ -186,8 +127,9 @@ Report WorldDriver::call(NextEnd next_end, const Poll& poll) {
             poll();
         }
     }
-    end_call();
+    player_.end();
     finish(report);
+    run_warnings_.add_meanwhile(world_, warnings_);
     return report;
 }
 
@@ -271,7 +213,8 @@ constexpr std::string_view mark = "Incise state";
 }  // namespace
 
 void WorldDriver::save_rest(ArchiveWriter& ar) const {
-    ar(std::uint64_t{scripts_.size()}, last_step_, scripts_, led_, constraints_, edits_);
+    ar(std::uint64_t{scripts_.size()}, last_step_, scripts_, run_warnings_, player_.targets(),
+       edits_);
 }
 
 UndoPoint WorldDriver::undo_point() const {
@@ -321,26 +264,18 @@ void WorldDriver::restore_rest(ArchiveReader& ar, const std::function<void()>& r
         refuse("the scenario of the saved world has " + std::to_string(num_scripts) +
                " tools, and this one " + std::to_string(scripts_.size()));
     runner::ScriptedTools scripts = scripts_;
-    std::vector<Led> led;
-    std::vector<NamedConstraint> constraints;
+    runner::RunWarnings run_warnings = run_warnings_;
+    sim::StepInputs targets;
     std::vector<sim::EditRecord> edits;
-    ar(scripts, led, constraints, edits);
+    ar(scripts, run_warnings, targets, edits);
     const std::uint64_t version = topology_version();
     restore_world();
+    if (world_.tools().size() < scripts.size()) refuse("its tools are not those of its world");
     last_step_ = last;
     scripts_ = std::move(scripts);
-    led_ = std::move(led);
-    constraints_ = std::move(constraints);
-    const bool fits = led_.size() == world_.tools().size() && led_.size() >= scripts_.size() &&
-                      constraints_.size() == world_.constraints().size();
-    led_.resize(world_.tools().size());
-    constraints_.resize(world_.constraints().size());
-    for (std::size_t i = 0; i < constraints_.size(); ++i)
-        constraints_[i].id = world_.constraints()[i];
-    if (!fits) refuse("its tools or constraints are not those of its world");
+    run_warnings_ = run_warnings;
+    player_.restore(targets, world_);
     edits_ = std::move(edits);
-    loads_.clear();
-    for (const physics::Load& load : world_.model().loads().all()) loads_.push_back(load.name);
     version_base_ = version + 1 - world_.mesh().epoch();
     note_tools();
 }

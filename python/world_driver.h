@@ -12,10 +12,13 @@
 #include <string_view>
 #include <vector>
 
+#include "incise/runner/run_warnings.h"
 #include "incise/runner/scripted_tools.h"
 #include "incise/scenario/body.h"
 #include "incise/scenario/document.h"
 #include "incise/scenario/scenario.h"
+#include "incise/sim/step_inputs.h"
+#include "incise/sim/tool_player.h"
 #include "incise/sim/undo_point.h"
 #include "incise/sim/world.h"
 #include "incise/topology/pose.h"
@@ -47,16 +50,6 @@ struct Report {
     double max_penetration = 0.0;               ///< largest of the call, m
 };
 
-/// A constraint by its name. Grasps have a pose.
-struct NamedConstraint {
-    std::string name;
-    sim::ConstraintId id;
-    std::optional<Pose> pose;       ///< of a grasp, after the last step
-    std::optional<Pose> target;     ///< of a grasp, at the end of the next call
-    std::optional<Pose> from = {};  ///< of a grasp with a target, at the beginning of the call
-    static void archive(auto& ar, auto& self) { ar(self.name, self.pose, self.target); }
-};
-
 /// A world, its scenario, and what leads its tools.
 ///
 /// Tools that a program leads move straight, and turn the shortest way, from where they are to
@@ -64,13 +57,11 @@ struct NamedConstraint {
 class WorldDriver {
   public:
     /// Builds the world of a scenario at time 0. Throws as runner::Simulation.
-    /// @param is_endless  the end time of the scenario means nothing
-    WorldDriver(const scenario::Scenario& scenario, bool is_endless);
+    explicit WorldDriver(const scenario::Scenario& scenario);
 
     sim::World& world() { return world_; }
     const sim::World& world() const { return world_; }
     const scenario::Scenario& scenario() const { return scenario_; }
-    bool is_endless() const { return is_endless_; }
 
     /// Returns the warnings so far, of the body and of the steps.
     const std::vector<std::string>& warnings() const { return warnings_; }
@@ -117,17 +108,25 @@ class WorldDriver {
     std::size_t tie(sim::ToolId tool);
     void untie(sim::ToolId tool);
     void set_suture_target(sim::ToolId tool, double length);
-    /// Returns what the tissue exerted on the tool in the last step.
-    sim::ToolState tool_state(sim::ToolId tool) const;
+    /// Returns what tissue exerted on the tools over the last call.
+    const sim::ToolForces& tool_forces() const { return player_.forces(); }
+    /// True if the tool divides elements and its cut ended in one in the last step.
+    bool is_in_tissue(sim::ToolId tool) const;
 
-    const std::vector<NamedConstraint>& constraints() const { return constraints_; }
+    /// Returns the constraint with this name; throws InputError if there is none.
+    sim::ConstraintId constraint(const std::string& name) const;
     /// Grasps nodes at their present positions. Throws InputError for a name that is taken.
     void grasp(const std::string& name, std::vector<VertexId> nodes, const Pose& pose);
     void set_grasp_target(const std::string& name, const Pose& pose);
+    /// Returns the pose that a grasp has at the end of the next call, or now, if none is set;
+    /// nothing for another constraint.
+    std::optional<Pose> grasp_pose(const std::string& name) const;
     void release(const std::string& name);
 
     /// Returns the load with this name; throws InputError if there is none.
-    const physics::Load& load(const std::string& name) const;
+    sim::LoadId load(const std::string& name) const;
+    /// Returns by what a load is multiplied at present.
+    double load_factor(const std::string& name) const;
     void set_load_factor(const std::string& name, double factor);
 
     UndoPoint undo_point() const;
@@ -140,24 +139,12 @@ class WorldDriver {
     void restore(std::string_view bytes);
 
   private:
-    WorldDriver(scenario::Scenario scenario, scenario::Body body, bool is_endless);
+    WorldDriver(scenario::Scenario scenario, scenario::Body body);
 
-    /// What a tool that the program leads is to do in the next call.
-    struct Led {
-        std::optional<Pose> from, target;
-        bool leaves = false;
-        std::optional<double> length_from, length_target;  // of a suture, m
-        static void archive(auto& ar, auto& self) {
-            ar(self.from, self.target, self.leaves, self.length_from, self.length_target);
-        }
-    };
     void save_rest(ArchiveWriter& ar) const;
     void restore_rest(ArchiveReader& ar, const std::function<void()>& restore_world);
     void require_led(sim::ToolId tool) const;
     void require_posable(sim::ToolId tool, const Pose& pose) const;
-    void begin_call();
-    void lead(double part, bool is_last);
-    void end_call();
     void make_step(double end, double part, bool is_last, Report& report);
     void note(Report& report);
     void finish(Report& report) const;
@@ -166,13 +153,12 @@ class WorldDriver {
     Report call(NextEnd next_end, const Poll& poll);
 
     scenario::Scenario scenario_;
-    bool is_endless_;
     std::vector<std::string> warnings_;
     sim::World world_;
+    runner::RunWarnings run_warnings_;
     runner::ScriptedTools scripts_;
-    std::vector<Led> led_;                      // by tool, in the order of World::tools()
-    std::vector<NamedConstraint> constraints_;  // in the order of World::constraints()
-    std::vector<std::string> loads_;            // names, in the order of World::loads()
+    sim::StepInputs inputs_;  // of the present step
+    sim::ToolPlayer player_;  // of a call
     std::vector<sim::EditRecord> edits_;
     std::shared_ptr<const FeelingTools> feeling_;
     double last_step_ = 0.0;

@@ -53,16 +53,16 @@ sim::ToolId WorldDriver::add_tool(const std::string& name, const scenario::Value
         throw InputError("tool '" + name +
                          "': a cut has no pose: it lies in the frame of the world");
     const sim::ToolId tool = world_.add_tool({name, std::move(held.shape)});
-    led_.resize(world_.tools().size());
     note_tools();
     add_warnings(held.warnings);
     if (pose || is_cut) world_.place_tool(tool, pose.value_or(Pose()));
-    if (is_cut) world_.withdraw_tool(tool);  // after it has cut in the next step
+    if (is_cut) player_.targets().withdraw(tool);  // after it has cut in the next step
     return tool;
 }
 
 std::optional<Pose> WorldDriver::tool_pose(sim::ToolId tool) const {
-    if (led_.at(tool.index).target) return led_[tool.index].target;
+    const sim::ToolInput* target = player_.targets().find(tool);
+    if (target && target->pose) return target->pose;
     if (!world_.is_tool_present(tool)) return std::nullopt;
     return world_.tool_pose(tool);
 }
@@ -86,24 +86,22 @@ void WorldDriver::require_posable(sim::ToolId tool, const Pose& pose) const {
 
 void WorldDriver::set_tool_target(sim::ToolId tool, const Pose& pose) {
     require_posable(tool, pose);
-    led_[tool.index].target = pose;
+    player_.targets().move(tool, pose);
 }
 
 void WorldDriver::place_tool(sim::ToolId tool, const Pose& pose) {
     require_posable(tool, pose);
     world_.place_tool(tool, pose);
-    led_[tool.index] = {};
+    player_.targets().forget(tool);
 }
 
 void WorldDriver::withdraw_tool(sim::ToolId tool) {
     require_led(tool);
-    Led& led = led_[tool.index];
     const sim::ToolDef& def = world_.tool(tool);
     if (!cutting::traits_of(def.shape).has_pose)
         throw InputError("tool '" + def.name + "' is a suture: use untie()");
-    if (!world_.is_tool_present(tool) && !led.target)
-        throw InputError("tool '" + def.name + "' is not there to be withdrawn");
-    led.leaves = true;
+    if (!tool_pose(tool)) throw InputError("tool '" + def.name + "' is not there to be withdrawn");
+    player_.targets().withdraw(tool);
 }
 
 std::size_t WorldDriver::close(sim::ToolId tool) {
@@ -119,74 +117,81 @@ void WorldDriver::open(sim::ToolId tool) {
 std::size_t WorldDriver::tie(sim::ToolId tool) {
     require_led(tool);
     const std::size_t num_points = world_.tie_suture(tool);
-    led_[tool.index] = {};
+    player_.targets().forget(tool);
     return num_points;
 }
 
 void WorldDriver::untie(sim::ToolId tool) {
     require_led(tool);
     world_.untie_suture(tool);
-    led_[tool.index] = {};
+    player_.targets().forget(tool);
 }
 
 void WorldDriver::set_suture_target(sim::ToolId tool, double length) {
     require_led(tool);
-    // The world checks the length, and that the tool is a tied suture.
-    world_.set_suture_length(tool, length);
-    led_[tool.index].length_target = length;
+    world_.require_possible(sim::StepInputs().draw(tool, length));
+    player_.targets().draw(tool, length);
 }
 
-sim::ToolState WorldDriver::tool_state(sim::ToolId tool) const {
-    for (const sim::ToolState& state : world_.report().tools)
-        if (state.tool == tool) return state;
-    sim::ToolState absent{};
-    absent.tool = tool;
-    return absent;
+bool WorldDriver::is_in_tissue(sim::ToolId tool) const {
+    const auto& states = world_.report().tools;
+    const auto found = std::ranges::find(states, tool, &sim::ToolState::tool);
+    return found != states.end() && found->is_in_tissue;
 }
 
 // --- Constraints and loads
 
-namespace {
-auto find_constraint(auto& constraints, const std::string& name) {
-    const auto found = std::ranges::find(constraints, name, &NamedConstraint::name);
-    if (found == constraints.end()) throw InputError("the world has no constraint '" + name + "'");
-    return found;
+sim::ConstraintId WorldDriver::constraint(const std::string& name) const {
+    for (std::size_t i = 0; i < world_.model().num_constraints(); ++i)
+        if (world_.model().constraint_name(i) == name) return world_.constraints()[i];
+    throw InputError("the world has no constraint '" + name + "'");
 }
-}  // namespace
 
 void WorldDriver::grasp(const std::string& name, std::vector<VertexId> nodes, const Pose& pose) {
     require_name("grasp", name);
-    if (std::ranges::find(constraints_, name, &NamedConstraint::name) != constraints_.end())
-        throw InputError("grasp '" + name + "': the world has a constraint of this name already");
-    const sim::ConstraintId id = world_.grasp(name, std::move(nodes), pose);
-    constraints_.push_back({name, id, pose, {}});
+    for (std::size_t i = 0; i < world_.model().num_constraints(); ++i)
+        if (world_.model().constraint_name(i) == name)
+            throw InputError("grasp '" + name +
+                             "': the world has a constraint of this name already");
+    world_.grasp(name, std::move(nodes), pose);
 }
 
 void WorldDriver::set_grasp_target(const std::string& name, const Pose& pose) {
-    const auto found = find_constraint(constraints_, name);
-    if (!found->pose)
+    const sim::ConstraintId id = constraint(name);
+    if (!world_.grasp_pose(id))
         throw InputError("constraint '" + name + "' is no grasp: the scenario says how it moves");
     require_sound("grasp '" + name + "'", pose);
-    found->target = pose;
+    player_.targets().move(id, pose);
+}
+
+std::optional<Pose> WorldDriver::grasp_pose(const std::string& name) const {
+    const sim::ConstraintId id = constraint(name);
+    const sim::GraspInput* target = player_.targets().find(id);
+    return target ? target->pose : world_.grasp_pose(id);
 }
 
 void WorldDriver::release(const std::string& name) {
-    const auto found = find_constraint(constraints_, name);
-    world_.release(found->id);
-    constraints_.erase(found);
+    const sim::ConstraintId id = constraint(name);
+    player_.targets().forget(id);
+    world_.release(id);
 }
 
-const physics::Load& WorldDriver::load(const std::string& name) const {
-    const auto found = std::ranges::find(loads_, name);
-    if (found == loads_.end()) throw InputError("the world has no load '" + name + "'");
-    return world_.model().loads().all()[static_cast<std::size_t>(found - loads_.begin())];
+sim::LoadId WorldDriver::load(const std::string& name) const {
+    const auto& all = world_.model().loads().all();
+    const auto found = std::ranges::find(all, name, &physics::Load::name);
+    if (found == all.end()) throw InputError("the world has no load '" + name + "'");
+    return world_.loads()[static_cast<std::size_t>(found - all.begin())];
+}
+
+double WorldDriver::load_factor(const std::string& name) const {
+    load(name);
+    const auto& all = world_.model().loads().all();
+    const auto& curve = std::ranges::find(all, name, &physics::Load::name)->factor;
+    return curve.is_empty() ? 1.0 : curve.at(world_.time());
 }
 
 void WorldDriver::set_load_factor(const std::string& name, double factor) {
-    load(name);
-    const auto found = std::ranges::find(loads_, name);
-    world_.set_load_factor(world_.loads()[static_cast<std::size_t>(found - loads_.begin())],
-                           factor);
+    world_.set_load_factor(load(name), factor);
 }
 
 }  // namespace incise::python

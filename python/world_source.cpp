@@ -43,8 +43,7 @@ struct Source {
     std::optional<scenario::Value> document;  ///< if not set, `file` is read
     std::filesystem::path file;
     std::vector<std::string> overrides;
-    std::shared_ptr<const topology::MeshData> mesh;  ///< in the place of that of the document
-    bool is_endless = false;
+    scenario::ForProgram program;
 };
 
 std::vector<std::string> texts_from(const py::object& overrides) {
@@ -72,31 +71,11 @@ void set_entry(scenario::Table& table, const std::string& key, scenario::Value v
         table.push_back({key, {}, std::move(value)});
 }
 
-/// Adds what a file must have, but a world in Python need not: an end, and no frames.
-void complete(Source& source) {
-    auto& root = std::get<scenario::Table>(source.document->data);
-    if (!find_entry(root, "output"))
-        set_entry(root, "output", {scenario::Table{{"interval", {}, {0.0, {}}}}, {}});
-    if (!find_entry(root, "dynamics")) set_entry(root, "dynamics", {scenario::Table(), {}});
-    auto* dynamics = std::get_if<scenario::Table>(&find_entry(root, "dynamics")->value.data);
-    if (!dynamics || find_entry(*dynamics, "end_time")) return;
-    const scenario::Entry* mode = find_entry(*dynamics, "mode");
-    const auto* text = mode ? mode->value.get<std::string>() : nullptr;
-    // Loads of statics are usually at their full values at 1 s.
-    constexpr double never = 1e6;
-    set_entry(*dynamics, "end_time", {text && *text == "static" ? 1.0 : never, {}});
-    source.is_endless = true;
-}
-
 /// Puts the mesh of a scenario into its document: a dict, the name of a file, or an incise.Mesh.
 void set_mesh(Source& source, const py::object& mesh) {
     auto& root = std::get<scenario::Table>(source.document->data);
     if (py::isinstance<PyMesh>(mesh)) {
-        source.mesh = mesh.cast<std::shared_ptr<PyMesh>>()->data;
-        const scenario::Array ones{
-            {std::int64_t{1}, {}}, {std::int64_t{1}, {}}, {std::int64_t{1}, {}}};
-        const scenario::Table box{{"size", {}, {ones, {}}}, {"cells", {}, {ones, {}}}};
-        set_entry(root, "mesh", {scenario::Table{{"box", {}, {box, {}}}}, {}});
+        source.program.mesh = mesh.cast<std::shared_ptr<PyMesh>>()->data;
     } else if (py::isinstance<py::dict>(mesh)) {
         set_entry(root, "mesh", value_from(mesh, "mesh"));
     } else {
@@ -110,17 +89,13 @@ World make(Source source, int num_threads) {
     World world;
     {
         const Unlocked unlocked;
-        scenario::Scenario scenario =
-            sound(source.document ? scenario::read_scenario(std::move(*source.document),
-                                                            source.file, source.overrides)
-                                  : scenario::read_scenario(source.file, source.overrides),
-                  warnings);
-        if (source.mesh) {
-            scenario.mesh.source = std::move(source.mesh);
-            scenario.mesh.location = source.file.string() + ": mesh";
-        }
+        scenario::Scenario scenario = sound(
+            source.document ? scenario::read_scenario(std::move(*source.document), source.file,
+                                                      source.overrides, &source.program)
+                            : scenario::read_scenario(source.file, source.overrides),
+            warnings);
         try {
-            world = std::make_shared<Handle>(std::move(scenario), source.is_endless);
+            world = std::make_shared<Handle>(std::move(scenario));
         } catch (const scenario::BodyError&) {
             throw;
         } catch (const InputError& error) {
@@ -190,7 +165,6 @@ World make_world(const py::object& scenario, const py::object& mesh, const py::o
             set_entry(*table, key, value_from(*value, key));
         }
     }
-    complete(source);
     return make(std::move(source), num_threads);
 }
 

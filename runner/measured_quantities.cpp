@@ -29,7 +29,7 @@ void append(std::vector<std::pair<std::string, double>>& quantities,
 }  // namespace
 
 Quantities history_row(const sim::World& world, double time_step,
-                       const sim::BodyTotals& body_totals) {
+                       const sim::BodyTotals& body_totals, const sim::ToolForces& forces) {
     const physics::Model& model = world.model();
     const physics::Totals& t = body_totals.totals;
     const sim::ContactState& contact = world.report().contact;
@@ -67,12 +67,7 @@ Quantities history_row(const sim::World& world, double time_step,
     }
     for (const sim::ToolId id : world.tools()) {
         if (!cutting::feels_force(world.tool(id).shape)) continue;
-        Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-        for (const sim::ToolState& tool : world.report().tools)
-            if (tool.tool == id) {
-                force = tool.force;
-                torque = tool.torque;
-            }
+        const auto [force, torque] = forces.of(id);
         append(row, scenario::force_quantities(world.tool(id).name),
                std::array{force.x(), force.y(), force.z(), torque.x(), torque.y(), torque.z()});
     }
@@ -80,8 +75,9 @@ Quantities history_row(const sim::World& world, double time_step,
 }
 
 Quantities summary_quantities(const sim::World& world, double time_step,
+                              const sim::ToolForces& forces,
                               std::span<const sim::EditRecord> edits) {
-    auto quantities = history_row(world, time_step, world.ledger().body_totals());
+    auto quantities = history_row(world, time_step, world.ledger().body_totals(), forces);
     std::size_t removed = 0, split = 0, added = 0, opened = 0;
     double cut_area = 0.0, mass_removed = 0.0;
     for (const sim::EditRecord& edit : edits) {

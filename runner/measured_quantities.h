@@ -22,13 +22,15 @@ using Quantities = std::vector<std::pair<std::string, double>>;
 /// @param world        the world
 /// @param time_step    the last step, s
 /// @param body_totals  the body totals at the time of the row
+/// @param forces       what tissue exerted on the tools since the last row
 Quantities history_row(const sim::World& world, double time_step,
-                       const sim::BodyTotals& body_totals);
+                       const sim::BodyTotals& body_totals, const sim::ToolForces& forces);
 /// Returns the row of a run.
 /// @param simulation   the simulation
 /// @param body_totals  the body totals at the time of the row
 inline Quantities history_row(const Simulation& simulation, const sim::BodyTotals& body_totals) {
-    return history_row(simulation.world(), simulation.time_step(), body_totals);
+    return history_row(simulation.world(), simulation.time_step(), body_totals,
+                       simulation.tool_forces());
 }
 inline Quantities history_row(const Simulation& simulation) {
     return history_row(simulation, simulation.ledger().body_totals());
@@ -38,12 +40,15 @@ inline Quantities history_row(const Simulation& simulation) {
 /// totals over the run.
 /// @param world      the world
 /// @param time_step  the last step, s
+/// @param forces     what tissue exerted on the tools, see history_row()
 /// @param edits      the records of all edits of the world
 Quantities summary_quantities(const sim::World& world, double time_step,
+                              const sim::ToolForces& forces,
                               std::span<const sim::EditRecord> edits);
 /// Returns the quantities of a run.
 inline Quantities summary_quantities(const Simulation& simulation) {
-    return summary_quantities(simulation.world(), simulation.time_step(), simulation.edits());
+    return summary_quantities(simulation.world(), simulation.time_step(), simulation.tool_forces(),
+                              simulation.edits());
 }
 
 /// Returns a sentence for each expectation of the scenario that is not met.

@@ -16,22 +16,22 @@ ScriptedTools::ScriptedTools(sim::World& world, std::vector<scenario::ScriptedTo
     }
 }
 
-void ScriptedTools::move(sim::World& world, double from, double to,
+void ScriptedTools::lead(sim::World& world, double from, double to, sim::StepInputs& inputs,
                          std::vector<std::string>& warnings) {
     for (std::size_t i = 0; i < scripts_.size(); ++i) {
         const scenario::ToolPath& path = scripts_[i].path;
         const sim::ToolId tool = world.tools()[i];
         if (std::holds_alternative<cutting::Suture>(world.tool(tool).shape)) {
-            draw_suture(world, tool, from, to, warnings);
+            draw_suture(world, tool, from, to, inputs, warnings);
             continue;
         }
         if (!path.is_present(from, to)) continue;
         if (!world.is_tool_present(tool)) world.place_tool(tool, path.pose(from));
         move_jaws(world, tool, from, warnings);
-        world.set_tool_pose(tool, path.pose(to));
+        inputs.move(tool, path.pose(to));
         if (to < path.last_time()) continue;
         const auto before = path.pose_before_end();
-        world.withdraw_tool(tool, before ? &*before : nullptr);
+        inputs.withdraw(tool, before ? &*before : nullptr);
     }
 }
 
@@ -53,7 +53,7 @@ void ScriptedTools::move_jaws(sim::World& world, sim::ToolId tool, double time,
 
 /// Ties a suture at its time, and draws its thread.
 void ScriptedTools::draw_suture(sim::World& world, sim::ToolId tool, double from, double to,
-                                std::vector<std::string>& warnings) const {
+                                sim::StepInputs& inputs, std::vector<std::string>& warnings) const {
     const Script& script = scripts_[tool.index];
     const double begin = script.path.first_time(), end = begin + script.over;
     // The first step that begins at its time, or the last one that can.
@@ -71,7 +71,7 @@ void ScriptedTools::draw_suture(sim::World& world, sim::ToolId tool, double from
     if (!script.length || now == *script.length) return;
     const double start = std::max(begin, from);
     const double part = to >= end ? 1.0 : (to - start) / (end - start);
-    world.set_suture_length(tool, now + part * (*script.length - now));
+    inputs.draw(tool, now + part * (*script.length - now));
 }
 
 void ScriptedTools::warn_of_lost_holds(const sim::World& world,

@@ -3,17 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "incise/base/checksum.h"
 #include "incise/base/error.h"
 #include "incise/base/number_format.h"
 #include "incise/io/files/input_file.h"
-#include "incise/physics/body/winding.h"
 #include "incise/scenario/body.h"
 #include "incise/scenario/remedies.h"
 #include "incise/scenario/step_limit.h"
-#include "incise/topology/mesh_metrics.h"
 
 namespace incise::runner {
 
@@ -58,8 +55,7 @@ Simulation::Simulation(const scenario::Scenario& scenario, scenario::Body body, 
                                   std::move(body.boundary_conditions), warnings_)),
       tools_(world_, std::move(body.tools)),
       fingerprint_(fingerprint_of(model(), scenario.tools)),
-      warned_step_(ledger().initial().stable_step),
-      size_(topology::mean_element_length(mesh())),
+      run_warnings_(world_, scenario_.dynamics),
       num_body_warnings_(warnings_.size()) {
     // Refuses a fixed step that is too large before anything is written.
     scenario::step_limit(scenario_, model(), world_.stable_step(), num_steps());
@@ -73,10 +69,13 @@ void Simulation::start() {
 
 bool Simulation::is_finished() const { return time() >= scenario_.dynamics.end_time; }
 
-void Simulation::step(Interval step) {
-    tools_.move(world_, step.from, step.to, warnings_);
+void Simulation::step(Interval step, const sim::StepInputs& inputs) {
+    inputs_ = inputs;
+    tools_.lead(world_, step.from, step.to, inputs_, warnings_);
+    if (begins_row_) forces_.begin(step.from);
+    begins_row_ = false;
     try {
-        world_.step_to(step.to);
+        world_.step_to(step.to, inputs_);
     } catch (const sim::ToolError& error) {
         report_edits();
         if (!error.undividable.is_valid()) throw;
@@ -87,40 +86,20 @@ void Simulation::step(Interval step) {
         throw PhysicsError(failure.what() + scenario::remedy_for(failure));
     }
     last_step_ = step.to - step.from;
+    forces_.add(world_.report());
+    begins_row_ = !world_.report().edits.empty();
     report_edits();
     tools_.warn_of_lost_holds(world_, warnings_);
-    note_overlap();
     for (Observer* observer : observers_) observer->on_step(*this);
-    if (is_finished()) {
-        warn_of_lost_elements();
-        warn_of_overlaps();
-    }
+    if (is_finished()) run_warnings_.add_end(world_, warnings_);
     report_frame();
     report_pause();
 }
 
-void Simulation::note_overlap() {
-    const double depth = world_.report().contact.max_penetration;
-    if (depth > overlap_.depth) overlap_ = {depth, time()};
-}
-
-void Simulation::warn_of_overlaps() {
-    // Contact keeps overlaps to some thousandths of an element.
-    constexpr double large = 0.2;
-    if (!(overlap_.depth > large * size_)) return;
-    std::ostringstream text;
-    text.precision(2);
-    text << "surfaces overlapped by up to " << overlap_.depth << " m, " << overlap_.depth / size_
-         << " of an element, at t = " << format_number(overlap_.time)
-         << " s: by a cut through tissue that is strained, by bodies or tools that begin in each "
-            "other, or by parts that are thin and pressed hard; see max_penetration in history.csv";
-    warnings_.push_back(text.str());
-}
-
 void Simulation::report_edits() {
+    run_warnings_.add_step(world_, warnings_);
     for (const sim::Edit& edit : world_.report().edits) {
         edits_.push_back(edit.record);
-        warn_of_short_steps(edit.record);
         for (Observer* observer : observers_) observer->on_edit(*this, edits_.back());
     }
 }
@@ -150,12 +129,12 @@ void Simulation::undo(const Moment& moment) {
 void Simulation::save_run(ArchiveWriter& ar) const {
     const std::vector<std::string> added(
         warnings_.begin() + static_cast<std::ptrdiff_t>(num_body_warnings_), warnings_.end());
-    ar(edits_, last_step_, num_frames_, overlap_, tools_, warned_step_, added);
+    ar(edits_, last_step_, num_frames_, run_warnings_, tools_, forces_, begins_row_, added);
 }
 
 void Simulation::restore_run(ArchiveReader& ar) {
     std::vector<std::string> added;
-    ar(edits_, last_step_, num_frames_, overlap_, tools_, warned_step_, added);
+    ar(edits_, last_step_, num_frames_, run_warnings_, tools_, forces_, begins_row_, added);
     warnings_.resize(num_body_warnings_);
     warnings_.insert(warnings_.end(), added.begin(), added.end());
     if (!(time() < scenario_.dynamics.end_time))
@@ -167,60 +146,6 @@ void Simulation::restore_run(ArchiveReader& ar) {
     if (!(last_step_ >= 0.0 && last_step_ <= time()))
         throw InputError("its step, " + format_number(last_step_) + " s, is none of the run");
     if (!ar.is_at_end()) throw InputError("there are data beyond the end of its state");
-}
-
-/// Warns if the stable step after the edit is below a tenth of that at the start or at the last
-/// such warning.
-void Simulation::warn_of_short_steps(const sim::EditRecord& edit) {
-    constexpr double much_shorter = 0.1;
-    const scenario::DynamicsSpec& dynamics = scenario_.dynamics;
-    const double now = edit.after.stable_step;
-    if (dynamics.mode == scenario::Mode::statics ||
-        dynamics.integrator != scenario::TimeIntegrator::semi_implicit_euler ||
-        !(now < much_shorter * warned_step_))
-        return;
-    const cutting::ToolShape* shape = nullptr;
-    for (const sim::ToolId id : world_.tools())
-        if (const sim::ToolDef& tool = world_.tool(id); tool.name == edit.tool) shape = &tool.shape;
-    std::ostringstream text;
-    text.precision(3);
-    text << "tool '" << edit.tool << "', at t = " << edit.time << " s: its cut has left stiff "
-         << "elements with so little mass that the stable step fell from " << warned_step_ << " to "
-         << now << " s: the run takes " << warned_step_ / now << " times as long from here on";
-    if (shape) text << "; " << scenario::for_longer_steps(*shape);
-    warnings_.push_back(text.str());
-    warned_step_ = now;
-}
-
-void Simulation::warn_of_lost_elements() {
-    // Tissue keeps its volume. An element below this volume ratio is crushed, even if its law has
-    // finite energy there.
-    constexpr double least_volume_ratio = 0.01;
-    std::size_t num_crushed = 0;
-    if (model().min_volume_ratio() < least_volume_ratio)
-        for (const ElementId e : model().fragments().elements())
-            num_crushed += model().element_result(e).volume_ratio < least_volume_ratio;
-    std::ostringstream text;
-    text << "at the end, t = " << time() << " s, ";
-    if (num_crushed > 0) {
-        text << num_crushed << (num_crushed == 1 ? " element is" : " elements are")
-             << " flat or inverted (J below " << least_volume_ratio
-             << "): the body has been pressed through itself, which tissue cannot; see min_J in "
-                "history.csv for when, and use smaller motions or loads, a finer mesh, or law = "
-                "\"stable-neo-hookean\"";
-    } else if (const auto winding = physics::find_winding(mesh(), world_.positions());
-               winding.num_edges > 0) {
-        text << "the body is wound up: round " << winding.num_edges
-             << (winding.num_edges == 1 ? " edge" : " edges")
-             << " elements go twice and lie in each other, one of them element "
-             << mesh().label(winding.element)
-             << ", though none is inverted; no law can undo that: see the frames for when it "
-                "happened, and use smaller motions or loads, a smaller dynamics.safety, or a lower "
-                "Poisson's ratio";
-    } else {
-        return;
-    }
-    warnings_.push_back(text.str());
 }
 
 double Simulation::time_step() const {
@@ -261,6 +186,7 @@ void Simulation::report_frame() {
     const bool is_due = time() >= static_cast<double>(num_frames_) * interval;
     if (!is_due && !is_finished()) return;
     ++num_frames_;
+    begins_row_ = true;
     for (Observer* observer : observers_) observer->on_frame(*this);
 }
 

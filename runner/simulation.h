@@ -8,10 +8,13 @@
 #include <vector>
 
 #include "incise/base/archive.h"
+#include "incise/runner/run_warnings.h"
 #include "incise/runner/scripted_tools.h"
 #include "incise/runner/step_policy.h"
 #include "incise/scenario/scenario.h"
 #include "incise/sim/ledger.h"
+#include "incise/sim/step_inputs.h"
+#include "incise/sim/tool_forces.h"
 #include "incise/sim/undo_point.h"
 #include "incise/sim/world.h"
 #include "incise/topology/mesh.h"
@@ -67,9 +70,10 @@ class Simulation {
     /// @pre  `stop` is after time()
     Interval next_step(double stop) const;
     /// Makes a step that next_step() has returned, then calls the observers.
+    /// @param inputs  of tools and grasps beside those of the scenario
     /// Throws PhysicsError if the motion is lost, and InputError if a tool meets something that it
     /// cannot cut. The edits of the failed step are then passed to the observers first.
-    void step(Interval step);
+    void step(Interval step, const sim::StepInputs& inputs = {});
     /// Makes the next step, which ends at the next frame at the latest.
     void step() { step(next_step(next_stop())); }
     bool is_finished() const;
@@ -106,6 +110,9 @@ class Simulation {
     const topology::Mesh& mesh() const { return world_.mesh(); }
     const physics::Model& model() const { return world_.model(); }
     const sim::Ledger& ledger() const { return world_.ledger(); }
+    /// Returns what tissue exerted on the tools since the last row of the history before this
+    /// moment. Rows are written at the start, after steps with edits, and with frames.
+    const sim::ToolForces& tool_forces() const { return forces_; }
     /// Returns the records of all edits so far.
     const std::vector<sim::EditRecord>& edits() const { return edits_; }
     double time() const { return world_.time(); }  ///< s
@@ -120,10 +127,6 @@ class Simulation {
     void save_run(ArchiveWriter& ar) const;
     void restore_run(ArchiveReader& ar);
     void report_edits();
-    void warn_of_short_steps(const sim::EditRecord& edit);
-    void warn_of_lost_elements();
-    void note_overlap();
-    void warn_of_overlaps();
     void report_frame();
     void report_pause();
 
@@ -132,18 +135,14 @@ class Simulation {
     std::vector<std::string> warnings_;
     sim::World world_;
     ScriptedTools tools_;
-    /// The largest overlap of surfaces so far.
-    struct Overlap {
-        double depth = 0.0, time = 0.0;  // m, s
-        static void archive(auto& ar, auto& self) { ar(self.depth, self.time); }
-    };
-    Overlap overlap_;
+    sim::StepInputs inputs_;  // of the present step
+    sim::ToolForces forces_;
+    bool begins_row_ = false;  // the next step is the first of another row of the history
     std::vector<Observer*> observers_;
     std::uint64_t fingerprint_;
     std::vector<sim::EditRecord> edits_;
     double last_step_ = 0.0;
-    double warned_step_;             // s, stable step at the last warning about it, or at the start
-    double size_;                    // m, mean length of an element at the start
+    RunWarnings run_warnings_;
     std::size_t num_body_warnings_;  // in warnings_, before those of the run
     std::uint64_t num_frames_ = 0;
 };

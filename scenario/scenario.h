@@ -82,6 +82,9 @@ struct DynamicsSpec {
     Mode mode = Mode::dynamic;
     TimeIntegrator integrator = TimeIntegrator::semi_implicit_euler;  ///< for Mode::dynamic
     double end_time = 0.0;                                            ///< s; 0 if not known
+    /// True if a program steps the world, and the document names no end. The end time is then
+    /// infinite; in statics it is the 1 s in which loads usually come up to their full values.
+    bool is_endless = false;
     /// The fixed time step, s. If not set, the step is the stable step times `safety`. Implicit
     /// Euler needs a fixed step.
     std::optional<double> time_step;

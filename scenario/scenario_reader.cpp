@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 #include "incise/base/error.h"
 #include "incise/base/number_format.h"
@@ -163,22 +164,28 @@ std::string known_why_no_contact(const TableReader& root, const Scenario& scenar
     return why_no_contact(scenario.dynamics, scenario.contact);
 }
 
-Scenario read_all(const TableReader& root, const std::filesystem::path& file) {
+Scenario read_all(const TableReader& root, const std::filesystem::path& file,
+                  const ForProgram* program) {
     Scenario scenario;
     scenario.name = file.stem().string();
     scenario.folder = file.parent_path();
     scenario.title = root.text("title", scenario.name);
-    scenario.mesh = read_mesh_spec(root, scenario.folder);
+    if (program && program->mesh) {
+        scenario.mesh.source = program->mesh;
+        scenario.mesh.location = file.string() + ": mesh";
+    } else {
+        scenario.mesh = read_mesh_spec(root, scenario.folder);
+    }
     scenario.materials = read_materials(root, scenario.mesh);
-    scenario.dynamics = read_dynamics(root, scenario.materials);
-    const double end_time = scenario.dynamics.end_time;
+    scenario.dynamics = read_dynamics(root, scenario.materials, program == nullptr);
+    const double end_time = scenario.dynamics.is_endless ? 0.0 : scenario.dynamics.end_time;
     scenario.contact = read_contact(root, scenario.dynamics);
     std::vector<std::string> held;
     scenario.constraints = read_constraints(root, end_time, held);
     scenario.loads = read_loads(root, end_time);
     scenario.tools =
         read_tools(root, scenario.folder, end_time, known_why_no_contact(root, scenario));
-    scenario.output = read_output(root, end_time);
+    scenario.output = read_output(root, end_time, program == nullptr);
     std::vector<std::string> probes;
     for (const ToolSpec& tool : scenario.tools)
         if (cutting::feels_force(tool.shape)) probes.push_back(tool.name);
@@ -233,12 +240,16 @@ MeshSpec read_mesh_spec(const TableReader& root, const std::filesystem::path& fo
     return spec;
 }
 
-DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec> materials) {
+DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec> materials,
+                           bool needs_end) {
+    constexpr double never = std::numeric_limits<double>::infinity();
     DynamicsSpec spec;
-    root.require("dynamics", "add a section [dynamics] with an end_time");
+    if (needs_end) root.require("dynamics", "add a section [dynamics] with an end_time");
     const auto dynamics = root.table("dynamics", {dynamics_keys});
+    spec.is_endless = !needs_end && !(dynamics ? dynamics->has("end_time") : root.has("dynamics"));
+    if (spec.is_endless) spec.end_time = never;
     if (!dynamics) return spec;
-    dynamics->require("end_time", "simulated seconds, as in end_time = 1.0");
+    if (needs_end) dynamics->require("end_time", "simulated seconds, as in end_time = 1.0");
     spec.end_time_location = dynamics->location_text("end_time");
     spec.time_step_location = dynamics->location_text("time_step");
     spec.precision_location = dynamics->location_text("precision");
@@ -257,6 +268,7 @@ DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec
     spec.gravity = dynamics->vector("gravity");
     if (const auto mode = dynamics->choice("mode", {mode_names}))
         spec.mode = static_cast<Mode>(*mode);
+    if (spec.is_endless && spec.mode == Mode::statics) spec.end_time = 1.0;
     if (const auto integrator = dynamics->choice("integrator", {integrator_names}))
         spec.integrator = static_cast<TimeIntegrator>(*integrator);
     if (dynamics->has("steps"))
@@ -283,7 +295,7 @@ contact::ContactSettings read_contact(const TableReader& root, const DynamicsSpe
     return settings;
 }
 
-OutputSpec read_output(const TableReader& root, double end_time) {
+OutputSpec read_output(const TableReader& root, double end_time, bool has_frames) {
     OutputSpec spec;
     // A short run has ten. In a long run an interruption loses at most 0.5 s of simulated time.
     spec.checkpoint_interval = std::min(0.5, end_time / 10.0);
@@ -293,6 +305,7 @@ OutputSpec read_output(const TableReader& root, double end_time) {
     };
     const auto output = root.table("output", {output_keys});
     if (!output) {
+        if (!has_frames && !root.has("output")) spec.interval = 0.0;
         check_number_of_frames(root, "dynamics", spec.interval, end_time);
         all_fields();
         return spec;
@@ -378,7 +391,7 @@ void check_series_name(const std::filesystem::path& file, Diagnostics& diagnosti
 }  // namespace
 
 ScenarioReport read_scenario(Value document, const std::filesystem::path& file,
-                             std::span<const std::string> overrides) {
+                             std::span<const std::string> overrides, const ForProgram* program) {
     ScenarioReport report;
     Diagnostics diagnostics(file.string(), overrides);
     check_series_name(file, diagnostics);
@@ -390,7 +403,7 @@ ScenarioReport read_scenario(Value document, const std::filesystem::path& file,
         }
     }
     const TableReader root(*document.get<Table>(), SourceLocation{}, "", {root_keys}, diagnostics);
-    report.scenario = read_all(root, file);
+    report.scenario = read_all(root, file, program);
     report.scenario.hash = content_hash(document);
     report.scenario.contents = contents_of(document);
     make_files_absolute(document, file.parent_path());

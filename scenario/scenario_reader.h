@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,13 +32,22 @@ struct ScenarioReport {
 ///                   as "dynamics.end_time=0.2" or "material[0].young=2000"
 ScenarioReport read_scenario(const std::filesystem::path& file,
                              std::span<const std::string> overrides = {});
+/// A world that a program steps: what the program gives beside the document. The document may leave
+/// out [dynamics] and its end time, and has no frames without [output].
+struct ForProgram {
+    /// In the place of the section [mesh], which is then left out.
+    std::shared_ptr<const topology::MeshData> mesh = nullptr;
+};
+
 /// The same for a document that is no file.
 /// @param document   the values, changed as the overrides say
 /// @param file       FOLDER/NAME: the folder to which paths are relative, and a name for messages
 ///                   and results. The file need not exist
 /// @param overrides  see above
+/// @param program    null for a document that must be complete
 /// @pre  the document is a table
 ScenarioReport read_scenario(Value document, const std::filesystem::path& file,
-                             std::span<const std::string> overrides = {});
+                             std::span<const std::string> overrides = {},
+                             const ForProgram* program = nullptr);
 
 }  // namespace incise::scenario

@@ -25,7 +25,9 @@ std::vector<MaterialSpec> read_materials(const TableReader& root, const MeshSpec
 /// Reads the [dynamics] section.
 /// @param root       the root table
 /// @param materials  the materials of the body; not all methods have forces in single precision
-DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec> materials);
+/// @param needs_end  false: see ForProgram
+DynamicsSpec read_dynamics(const TableReader& root, std::span<const MaterialSpec> materials,
+                           bool needs_end);
 /// Reads the [contact] section.
 /// @param dynamics  contact exists in explicit dynamics only
 contact::ContactSettings read_contact(const TableReader& root, const DynamicsSpec& dynamics);
@@ -50,7 +52,10 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
 /// where, and without a name. The tool is named as its kind, and has no path.
 ToolSpec read_held_tool(const Table& table, const std::filesystem::path& folder,
                         const std::string& why_no_contact, Diagnostics& diagnostics);
-OutputSpec read_output(const TableReader& root, double end_time);
+/// Reads the [output] section.
+/// @param end_time    end of the run, s; not above 0 if not known
+/// @param has_frames  without the section
+OutputSpec read_output(const TableReader& root, double end_time, bool has_frames);
 /// Reads the [expect] section.
 /// @param root         the root table
 /// @param constraints  names of the constraints, whose reactions are quantities

@@ -56,7 +56,8 @@ double step_limit(const Scenario& scenario, const physics::Model& model, double 
     // More steps would take years. In the end, rounding would keep the time from increasing.
     constexpr double max_steps = 1e10;
     const double duration = std::isfinite(dynamics.end_time) ? dynamics.end_time : 1.0;
-    if (!(limit * max_steps >= duration)) refuse_endless(dynamics, limit, model, num_steps);
+    if (!dynamics.is_endless && !(limit * max_steps >= duration))
+        refuse_endless(dynamics, limit, model, num_steps);
     return limit;
 }
 

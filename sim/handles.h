@@ -34,6 +34,10 @@ struct Handle {
     static void archive(auto& ar, auto& self) { ar(self.index, self.generation); }
 };
 
+using ToolId = Handle<struct ToolTag>;
+using ConstraintId = Handle<struct ConstraintTag>;
+using LoadId = Handle<struct LoadTag>;
+
 /// The ids of the things in a list, in the order of the list. Things are added at its end; those
 /// behind one that is removed move up.
 template <class Id>

@@ -19,17 +19,19 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
-const StepReport& World::step(double dt) {
+const StepReport& World::step(double dt, const StepInputs& inputs) {
     if (!(dt > 0.0 && std::isfinite(dt)))
         throw InputError("a step of " + format_number(dt) + " s: it must be above 0");
-    return parts_->checked_step(parts_->time + dt, dt);
+    return parts_->checked_step(parts_->time + dt, dt, inputs);
 }
 
-const StepReport& World::step_to(double time) {
-    return parts_->checked_step(time, time - parts_->time);
+const StepReport& World::step_to(double time, const StepInputs& inputs) {
+    return parts_->checked_step(time, time - parts_->time, inputs);
 }
 
-const StepReport& World::Parts::checked_step(double end, double dt) {
+void World::require_possible(const StepInputs& inputs) const { parts_->require_possible(inputs); }
+
+const StepReport& World::Parts::checked_step(double end, double dt, const StepInputs& inputs) {
     if (has_failed)
         throw InputError("the world has failed in the step from " + format_number(time) +
                          " s; restore a state that was saved before");
@@ -40,22 +42,53 @@ const StepReport& World::Parts::checked_step(double end, double dt) {
     if (solver == Solver::semi_implicit_euler && !(dt <= (1.0 + rounding_of_steps) * at_rest))
         throw InputError("a step of " + format_number(dt) + " s is above the stable step of " +
                          format_number(at_rest) + " s");
-    constexpr std::size_t most_parts = 1000;
-    for (const auto& tool : tools)
-        if (solver == Solver::semi_implicit_euler && parts_for(*tool) > double(most_parts))
-            throw InputError("tool '" + tool->def().name + "' moves so far in a step of " +
-                             format_number(dt) +
-                             " s that the step needs more than 1000 parts; move it more slowly");
-    if (num_parts(dt) > most_parts)
+    require_possible(inputs);
+    const std::size_t n = num_parts(dt, inputs);
+    // From here on nothing is refused.
+    report.num_parts = n;
+    take(inputs);
+    has_failed = true;
+    step_to(end);
+    has_failed = false;
+    return report;
+}
+
+void World::Parts::require_possible(const StepInputs& inputs) const {
+    for (const ToolInput& input : inputs.tools()) tool_of(input.tool).require_possible(input);
+    for (const GraspInput& input : inputs.grasps()) {
+        const std::size_t index = constraints.position_of(input.grasp);
+        const auto name = [&] { return "constraint '" + model.constraint_name(index) + "'"; };
+        if (!grasps[index]) throw InputError(name() + " is no grasp");
+        if (!input.pose.is_sound()) throw InputError(name() + ": its pose is none");
+    }
+}
+
+void World::Parts::take(const StepInputs& inputs) {
+    for (const ToolInput& input : inputs.tools()) tool_of(input.tool).take(input);
+    for (const GraspInput& input : inputs.grasps())
+        grasps[constraints.position_of(input.grasp)]->target = input.pose;
+}
+
+std::size_t World::Parts::num_parts(double dt, const StepInputs& inputs) const {
+    if (solver != Solver::semi_implicit_euler) return 1;
+    constexpr double most = 1000.0;
+    double parts = std::max(std::ceil(dt / stable_step - rounding_of_steps), 1.0);
+    if (parts > most)
         throw InputError("a step of " + format_number(dt) + " s is far above " +
                          format_number(stable_step) +
                          " s, the stable step of the tissue in its present strain; something "
                          "crushes or draws out an element: use smaller motions or loads, or "
                          "shorter steps");
-    has_failed = true;
-    step_to(end);
-    has_failed = false;
-    return report;
+    for (const ToolInput& input : inputs.tools()) {
+        const ToolActor& tool = tool_of(input.tool);
+        if (!contact || !tool.is_present() || !input.pose) continue;
+        parts = std::max(parts, tool.num_parts(*input.pose, contact->size()));
+        if (parts > most)
+            throw InputError("tool '" + tool.def().name + "' moves so far in a step of " +
+                             format_number(dt) +
+                             " s that the step needs more than 1000 parts; move it more slowly");
+    }
+    return static_cast<std::size_t>(parts);
 }
 
 const StepReport& World::report() const { return parts_->report; }
@@ -78,10 +111,6 @@ ToolId World::add_tool(const ToolDef& def) {
 void World::place_tool(ToolId id, const Pose& pose) {
     parts_->tool_of(id).place(parts_->tissue(), pose);
 }
-void World::set_tool_pose(ToolId id, const Pose& pose) { parts_->tool_of(id).set_target(pose); }
-void World::withdraw_tool(ToolId id, const Pose* pose_before) {
-    parts_->tool_of(id).withdraw(pose_before);
-}
 
 std::size_t World::close_tool(ToolId id) { return parts_->tool_of(id).close(parts_->tissue()); }
 void World::open_tool(ToolId id) { parts_->tool_of(id).open(); }
@@ -89,9 +118,6 @@ bool World::is_tool_closed(ToolId id) const { return parts_->tool_of(id).is_clos
 std::size_t World::num_held(ToolId id) const { return parts_->tool_of(id).num_held(); }
 
 std::size_t World::tie_suture(ToolId id) { return parts_->tool_of(id).tie(parts_->tissue()); }
-void World::set_suture_length(ToolId id, double length) {
-    parts_->tool_of(id).set_length_target(length);
-}
 double World::suture_length(ToolId id) const { return parts_->tool_of(id).length(); }
 void World::untie_suture(ToolId id) { parts_->tool_of(id).untie(); }
 bool World::is_suture_tied(ToolId id) const { return parts_->tool_of(id).is_tied(); }
@@ -125,17 +151,13 @@ ConstraintId World::grasp(std::string name, std::vector<VertexId> nodes, const P
     if (!pose.is_sound()) throw InputError("grasp '" + name + "': its pose is none");
     const ConstraintId id =
         add_constraint(physics::make_grip(std::move(name), std::move(nodes), pose));
-    p.grasps.back() = {pose, pose};
+    p.grasps.back().emplace(pose);
     return id;
 }
 
-void World::set_grasp_pose(ConstraintId grasp, const Pose& pose) {
-    Parts& p = *parts_;
-    const std::size_t index = p.constraints.position_of(grasp);
-    const std::string name = "constraint '" + p.model.constraint_name(index) + "'";
-    if (!p.grasps[index]) throw InputError(name + " is no grasp");
-    if (!pose.is_sound()) throw InputError(name + ": its pose is none");
-    p.grasps[index]->target = pose;
+std::optional<Pose> World::grasp_pose(ConstraintId constraint) const {
+    const auto& grasp = parts_->grasps[parts_->constraints.position_of(constraint)];
+    return grasp ? std::optional(grasp->pose) : std::nullopt;
 }
 
 void World::release(ConstraintId constraint) {

@@ -22,6 +22,7 @@
 #include "incise/physics/elements/element_result.h"
 #include "incise/sim/handles.h"
 #include "incise/sim/ledger.h"
+#include "incise/sim/step_inputs.h"
 #include "incise/topology/boundary_surface.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_data.h"
@@ -66,10 +67,6 @@ struct WorldDef {
 };
 
 class UndoPoint;
-
-using ToolId = Handle<struct ToolTag>;
-using ConstraintId = Handle<struct ConstraintTag>;
-using LoadId = Handle<struct LoadTag>;
 
 /// The definition of a tool.
 struct ToolDef {
@@ -142,6 +139,7 @@ class World {
     ~World();
 
     /// Advances the world by `dt`, s.
+    /// @param inputs  where tools and grasps are to be at the end of the step
     ///
     /// First the tissue moves, while the tools move to their new poses. Then the tools, in the
     /// order of tools(), cut the tissue that they have met. With Solver::statics the edited body
@@ -156,13 +154,18 @@ class World {
     ///
     /// Throws InputError, and changes nothing, if `dt` is not above 0, if `dt` is above
     /// rest_stable_step() or above 1000 times stable_step() with the explicit solver, if a probe
-    /// would need more than 1000 parts, or if the world has failed before.
+    /// would need more than 1000 parts, for inputs that require_possible() refuses, or if the world
+    /// has failed before.
     /// Throws physics::MotionFailure if the solver fails, and ToolError if a tool meets something
     /// that it cannot cut. In both cases the world has failed: it can be read and restored, but not
     /// stepped.
-    const StepReport& step(double dt);
+    const StepReport& step(double dt, const StepInputs& inputs = {});
     /// Advances the world to `time`, s, in one step; see step().
-    const StepReport& step_to(double time);
+    const StepReport& step_to(double time, const StepInputs& inputs = {});
+    /// Throws InputError if a step would refuse these inputs: for tools and grasps that the world
+    /// does not have, poses that are not sound, lengths below 0 or of what is no tied suture, and
+    /// for tools that are withdrawn and are not there.
+    void require_possible(const StepInputs& inputs) const;
     /// Returns the report of the last step. For a step that failed, it ends at the failure.
     const StepReport& report() const;
     /// True if the world has failed; see step().
@@ -180,24 +183,14 @@ class World {
     /// Returns the same bound for the body at rest, s. Only edits and force terms change it.
     double rest_stable_step() const;
 
-    /// Adds a tool. The tool is present in the world only after a pose has been set.
+    /// Adds a tool. The tool is present in the world only from its first pose on: that of
+    /// place_tool(), or of the inputs of a step.
     /// Throws InputError for an invalid shape, such as a blade with fewer than two points, or a
     /// radius that is not above 0, and for a tool that feels a force in a world without contact.
     ToolId add_tool(const ToolDef& def);
     /// Puts a tool at a pose immediately. The tool cuts and pushes nothing on the path to this
-    /// pose, and a withdrawal of it no longer holds. A tool that was closed is open. Throws
-    /// InputError if its cut ends in the tissue.
+    /// pose. A tool that was closed is open. Throws InputError if its cut ends in the tissue.
     void place_tool(ToolId tool, const Pose& pose);
-    /// Sets the pose of the tool at the end of the next step. Without a call the tool does not
-    /// move. A tool that was not present appears at this pose.
-    void set_tool_pose(ToolId tool, const Pose& pose);
-    /// Withdraws a tool at the end of the next step. The tool still takes part in this step, with
-    /// the pose that is set before or after this call, and its cut ends at the position that the
-    /// blade then has. After the step, a new pose makes the tool present again.
-    /// @param pose_before  a pose shortly before the last one. The two poses give the direction in
-    ///                     which the blade moved. If null, the direction is that of the last step
-    ///                     in which the blade moved.
-    void withdraw_tool(ToolId tool, const Pose* pose_before = nullptr);
     /// Closes a tool. The jaws of a grasper take hold of the surface that is in them at the present
     /// pose of the tool, and carry it from now on; returns how many points they hold. Scissors
     /// begin to close in the next step, and hold nothing.
@@ -214,9 +207,6 @@ class World {
     /// there. The thread is then as long as its way. Returns through how many points it passes:
     /// points without tissue in reach are left out. Throws InputError if the tool is no suture.
     std::size_t tie_suture(ToolId tool);
-    /// Sets the length that a thread has without tension at the end of the next step, m. Throws
-    /// InputError if the tool is no suture, is not tied, or for a length below 0.
-    void set_suture_length(ToolId tool, double length);
     /// Returns the length of a thread without tension, m; 0 if it is not tied.
     double suture_length(ToolId tool) const;
     /// Takes a thread out of the tissue. Throws InputError if the tool is no suture.
@@ -242,9 +232,8 @@ class World {
     /// @param pose  the present pose of the frame, m
     /// Throws InputError as add_constraint() does, and for an invalid pose.
     ConstraintId grasp(std::string name, std::vector<VertexId> nodes, const Pose& pose);
-    /// Sets the pose of the frame of a grasp at the end of the next step. Without a call the frame
-    /// does not move. Throws InputError if the constraint is no grasp.
-    void set_grasp_pose(ConstraintId grasp, const Pose& pose);
+    /// Returns the present pose of the frame of a grasp; nothing for another constraint.
+    std::optional<Pose> grasp_pose(ConstraintId constraint) const;
     /// Removes a constraint, which may be a grasp. The nodes of the constraint keep their
     /// velocities.
     void release(ConstraintId constraint);
@@ -314,7 +303,7 @@ class World {
 
     /// The format of save(). It differs between two builds of Incise if save() or a checkpoint of a
     /// run lists other members, or if a world computes other bits.
-    static constexpr std::uint32_t state_format = 17;
+    static constexpr std::uint32_t state_format = 18;
 
     /// Returns the state of the world as bytes: mesh, positions, velocities, gravity, damping,
     /// constraints, loads, contact, tools and cuts in progress. The materials and the solver are

@@ -66,8 +66,8 @@ void World::Parts::restore_rest(ArchiveReader& ar) {
 void World::Parts::require_sound_grasps() const {
     bool fits = grasps.size() == model.num_constraints();
     for (std::size_t i = 0; i < grasps.size() && fits; ++i)
-        fits = !grasps[i] || (grasps[i]->pose.is_sound() && grasps[i]->target.is_sound() &&
-                              !model.constraints().all()[i].grip.is_empty());
+        fits = !grasps[i] ||
+               (grasps[i]->pose.is_sound() && !model.constraints().all()[i].grip.is_empty());
     if (!fits) throw InputError("its grasps are those of another world");
 }
 

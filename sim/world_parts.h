@@ -68,10 +68,12 @@ inline constexpr double rounding_of_steps = 1e-8;
 
 // The parts of a world. Their order matters: later ones refer to earlier ones.
 struct World::Parts {
-    /// The present pose of the frame of a grasp, and its pose at the end of the next step.
+    /// The present pose of the frame of a grasp, and its pose at the end of the step.
     struct Grasp {
+        explicit Grasp(const Pose& at = {}) : pose(at), target(at) {}
         Pose pose, target;
-        static void archive(auto& ar, auto& self) { ar(self.pose, self.target); }
+        static void archive(ArchiveWriter& ar, const Grasp& self) { ar(self.pose); }
+        static void archive(ArchiveReader& ar, Grasp& self) { self = Grasp(ar.read<Pose>()); }
     };
 
     explicit Parts(WorldDef def);
@@ -91,18 +93,19 @@ struct World::Parts {
 
     /// Steps to the time `end`, after checks. `dt` is the length that was asked for: far from time
     /// 0 the difference of the times is another one.
-    const StepReport& checked_step(double end, double dt);
+    const StepReport& checked_step(double end, double dt, const StepInputs& inputs);
+    void require_possible(const StepInputs& inputs) const;
+    void take(const StepInputs& inputs);
     void step_to(double end);
-    /// Moves the body to the time `end`, in equal parts that are not above the stable step.
+    /// Moves the body to the time `end`, in report.num_parts equal parts.
     void move_to(double end);
     /// Returns the bound on steps for the present strain and motion, s.
     double present_bound() const;
     /// Follows a step with the stable step.
     void update_stable_step();
-    /// Returns how many parts a step of `dt`, s, needs.
-    std::size_t num_parts(double dt) const;
-    /// Returns how many parts a step needs in which a tool moves to its target.
-    double parts_for(const ToolActor& tool) const;
+    /// Returns in how many parts, none above the stable step, a step of `dt`, s, is made. Throws
+    /// InputError if they would be too many.
+    std::size_t num_parts(double dt, const StepInputs& inputs) const;
     /// Tells the contact which tools touch in a part of a step, from one share of it to another.
     /// @param moved  how far the tissue may have moved in the step so far, m
     void touch_with_tools(double from, double to, double moved);
@@ -114,7 +117,7 @@ struct World::Parts {
     void follow(ToolId id, const cutting::Split& done, double end);
     /// Lets contact and tools follow the edits of a step.
     void follow_with_contact();
-    ToolActor& tool_of(ToolId id) { return *tools[tool_ids.position_of(id)]; }
+    ToolActor& tool_of(ToolId id) const { return *tools[tool_ids.position_of(id)]; }
     Tissue tissue() { return {mesh, model, cutter, contact.get()}; }
     topology::BoundarySurface& built_surface();
 

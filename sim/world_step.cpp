@@ -179,17 +179,6 @@ void World::Parts::update_stable_step() {
     interval.least = std::numeric_limits<double>::infinity();
 }
 
-std::size_t World::Parts::num_parts(double dt) const {
-    if (solver != Solver::semi_implicit_euler) return 1;
-    double parts = std::max(std::ceil(dt / stable_step - rounding_of_steps), 1.0);
-    for (const auto& tool : tools) parts = std::max(parts, parts_for(*tool));
-    return static_cast<std::size_t>(std::min(parts, 1e9));
-}
-
-double World::Parts::parts_for(const ToolActor& tool) const {
-    return contact ? tool.num_parts(contact->size()) : 1.0;
-}
-
 void World::Parts::touch_with_tools(double from, double to, double moved) {
     contact->begin_tools();
     for (const auto& tool : tools) {
@@ -200,7 +189,7 @@ void World::Parts::touch_with_tools(double from, double to, double moved) {
 
 void World::Parts::move_to(double end) {
     const double from = time, dt = end - time;
-    const std::size_t n = report.num_parts = num_parts(dt);
+    const std::size_t n = report.num_parts;
     double moved = 0.0;  // how far a node has moved, at most
     reactions.assign(model.num_constraints(), {});
     for (std::size_t i = 0; i < n; ++i) {

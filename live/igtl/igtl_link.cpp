@@ -451,10 +451,9 @@ void IgtlLink::look(const Session& session, const DisplayMesh& mesh) {
         const LedTool* tool = session.find(name);
         if (!tool || !tool->is_in_hand) continue;
         Parts::Wrench& wrench = parts_->wrenches[device];
-        for (std::size_t i = 0; i < 3; ++i) {
-            wrench[i] = tool->force[static_cast<Eigen::Index>(i)];
-            wrench[i + 3] = tool->torque[static_cast<Eigen::Index>(i)];
-        }
+        const auto [force, torque] = session.tool_forces().of(tool->id);
+        std::copy_n(force.data(), 3, wrench.begin());
+        std::copy_n(torque.data(), 3, wrench.begin() + 3);
     }
 }
 

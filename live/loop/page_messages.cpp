@@ -109,8 +109,8 @@ Json PageMessages::state_of(const ScriptedTool& tool) const {
     Json state = {{"present", true}, {"pose", json_of(world.tool_pose(tool.id))}};
     if (cutting::traits_of(world.tool(tool.id).shape).closes)
         state["closed"] = world.is_tool_closed(tool.id);
-    for (const sim::ToolState& row : world.report().tools)
-        if (row.tool == tool.id) state["force"] = json_of(row.force);
+    if (cutting::feels_force(world.tool(tool.id).shape))
+        state["force"] = json_of(session_.tool_forces().of(tool.id).force);
     return state;
 }
 
@@ -125,8 +125,9 @@ Json PageMessages::state_of(const LedTool& tool, const LoopState& loop) const {
                   {"pose", json_of(is_suture ? Pose() : world.tool_pose(tool.id))}};
     if (is_suture) state["length"] = world.suture_length(tool.id);
     if (cutting::feels_force(world.tool(tool.id).shape)) {
-        state["force"] = json_of(tool.force);
-        state["torque"] = json_of(tool.torque);
+        const auto [force, torque] = session_.tool_forces().of(tool.id);
+        state["force"] = json_of(force);
+        state["torque"] = json_of(torque);
     }
     const cutting::ToolTraits& traits = cutting::traits_of(world.tool(tool.id).shape);
     if (traits.holds) state["held"] = world.num_held(tool.id);

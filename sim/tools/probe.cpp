@@ -29,11 +29,10 @@ class ProbeActor final : public TouchingActor<cutting::Probe, contact::RigidCont
     }
 
     // So that the probe does not pass through a surface.
-    double num_parts(double element_size) const override {
-        if (!is_present()) return 1.0;
+    double num_parts(const Pose& to, double element_size) const override {
         constexpr double most = 0.25;  // of an element, or of the probe
-        const double move = (target().position - pose().position).norm() +
-                            reach_ * pose().rotation.angularDistance(target().rotation);
+        const double move = (to.position - pose().position).norm() +
+                            reach_ * pose().rotation.angularDistance(to.rotation);
         return std::ceil(move / (most * std::min(half_width_, element_size)));
     }
     contact::ToolContact* touch(const Tissue& tissue, double from, double to, double) override {

@@ -37,12 +37,20 @@ class SutureActor final : public TouchingActor<cutting::Suture, contact::SutureC
         length_ = target_length_ = contact_->length();
         return num_points();
     }
-    void set_length_target(double length) override {
-        if (!is_present()) throw InputError("suture '" + def().name + "' is not tied");
-        if (!(length >= 0.0 && std::isfinite(length)))
-            throw InputError("suture '" + def().name + "': a length of " + format_number(length) +
-                             " m: it must be 0 or more");
-        target_length_ = length;
+    void require_possible(const ToolInput& input) const override {
+        if (input.length) {
+            if (!is_present()) throw InputError("suture '" + def().name + "' is not tied");
+            if (!(*input.length >= 0.0 && std::isfinite(*input.length)))
+                throw InputError("suture '" + def().name + "': a length of " +
+                                 format_number(*input.length) + " m: it must be 0 or more");
+        }
+        ToolInput rest = input;
+        rest.length.reset();
+        TouchingActor::require_possible(rest);
+    }
+    void take(const ToolInput& input) override {
+        TouchingActor::take(input);
+        if (input.length) target_length_ = *input.length;
     }
     double length() const override { return is_present() ? length_ : 0.0; }
     void untie() override {
@@ -60,17 +68,17 @@ class SutureActor final : public TouchingActor<cutting::Suture, contact::SutureC
     std::size_t num_points() const { return contact_ ? contact_->num_held() : 0; }
     void arrive() override { length_ = target_length_; }
     void save_own(ArchiveWriter& ar) const override {
-        ar(length_, target_length_);
+        ar(length_);
         TouchingActor::save_own(ar);
     }
     void restore_own(ArchiveReader& ar, const Tissue& tissue) override {
-        ar(length_, target_length_);
-        if (!(length_ >= 0.0 && target_length_ >= 0.0 && std::isfinite(length_ + target_length_)))
-            require_none("its thread has no length");
+        ar(length_);
+        if (!(length_ >= 0.0 && std::isfinite(length_))) require_none("its thread has no length");
+        target_length_ = length_;
         restore_contact(ar, tissue, tissue.model);
     }
 
-    double length_ = 0.0, target_length_ = 0.0;  // now and at the end of the next step, m
+    double length_ = 0.0, target_length_ = 0.0;  // now and at the end of the step, m
 };
 
 }  // namespace

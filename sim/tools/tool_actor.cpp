@@ -40,25 +40,26 @@ void ToolActor::place(const Tissue& tissue, const Pose& pose) {
     pose_ = target_ = pose;
 }
 
-void ToolActor::set_target(const Pose& pose) {
-    require_pose(pose);
-    if (!is_present_) pose_ = pose;
-    is_present_ = true;
-    target_ = pose;
+void ToolActor::require_possible(const ToolInput& input) const {
+    if (input.pose) require_pose(*input.pose);
+    if (input.length) refuse("is no suture");
+    if (input.is_withdrawn && !is_present_ && !input.pose) refuse("is not there to be withdrawn");
+    if (input.pose_before_end) require_sound(*input.pose_before_end);
 }
 
-void ToolActor::withdraw(const Pose* pose_before_end) {
-    if (!is_present_) refuse("is not there to be withdrawn");
-    if (pose_before_end) require_sound(*pose_before_end);
-    is_leaving_ = true;
-    pose_before_end_.reset();
-    if (pose_before_end) pose_before_end_ = *pose_before_end;
+void ToolActor::take(const ToolInput& input) {
+    if (input.pose) {
+        if (!is_present_) pose_ = *input.pose;
+        is_present_ = true;
+        target_ = *input.pose;
+    }
+    is_leaving_ = input.is_withdrawn;
+    pose_before_end_ = input.pose_before_end;
 }
 
 std::size_t ToolActor::close(const Tissue&) { refuse("has no jaws that close"); }
 void ToolActor::open() { refuse("has no jaws that open"); }
 std::size_t ToolActor::tie(const Tissue&) { refuse("is no suture"); }
-void ToolActor::set_length_target(double) { refuse("is no suture"); }
 double ToolActor::length() const { refuse("is no suture"); }
 void ToolActor::untie() { refuse("is no suture"); }
 bool ToolActor::is_tied() const { refuse("is no suture"); }
@@ -104,9 +105,8 @@ std::unique_ptr<ToolActor> load_actor(ArchiveReader& ar, const Tissue& tissue) {
     ar(def.name, def.shape);
     std::unique_ptr<ToolActor> actor = sound_actor(def, tissue);
     ToolActor::list(ar, *actor);
-    for (const Pose& pose :
-         {actor->pose_, actor->target_, actor->pose_before_end_.value_or(Pose())})
-        actor->require_sound(pose);
+    actor->require_sound(actor->pose_);
+    actor->target_ = actor->pose_;
     actor->restore_own(ar, tissue);
     return actor;
 }

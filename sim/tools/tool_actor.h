@@ -54,23 +54,29 @@ class ToolActor {
 
     // What a hand does: see the methods of World with these names.
     void place(const Tissue& tissue, const Pose& pose);
-    void set_target(const Pose& pose);
-    void withdraw(const Pose* pose_before_end);
     virtual std::size_t close(const Tissue& tissue);
     virtual void open();
     virtual bool is_closed() const { return false; }
     virtual std::size_t num_held() const { return 0; }
     virtual std::size_t tie(const Tissue& tissue);
-    virtual void set_length_target(double length);
     virtual double length() const;
     virtual void untie();
     virtual bool is_tied() const;
 
-    /// Prepares what the tool does in a step of `dt`, s.
-    virtual void begin_step(double /*dt*/) {}
-    /// Returns in how many parts a step must be divided for the motion of the tool.
+    /// Throws InputError unless the tool can do this in a step.
+    virtual void require_possible(const ToolInput& input) const;
+    /// Returns in how many parts a step must be divided in which the tool goes to a pose.
     /// @param element_size  mean length of an element at rest, m
-    virtual double num_parts([[maybe_unused]] double element_size) const { return 1.0; }
+    /// @pre  the tool is there
+    virtual double num_parts([[maybe_unused]] const Pose& to,
+                             [[maybe_unused]] double element_size) const {
+        return 1.0;
+    }
+    /// Takes what the tool is to do in the step that now begins.
+    /// @pre  require_possible()
+    virtual void take(const ToolInput& input);
+    /// Prepares what the tool does in a step of `dt`, s, also if it has no input.
+    virtual void begin_step(double /*dt*/) {}
     /// Goes on in a part of a step, from one share of it to another. Returns what the tool does to
     /// the tissue that it touches; null if it touches nothing.
     /// @param moved  how far the tissue may have moved in the step so far, m
@@ -124,14 +130,14 @@ class ToolActor {
     void require_sound(const Pose& pose) const;
     /// Throws InputError unless the tool can be at the pose.
     void require_pose(const Pose& pose) const;
-    static void list(auto& ar, auto& self) {
-        ar(self.is_present_, self.pose_, self.target_, self.is_leaving_, self.pose_before_end_);
-    }
+    static void list(auto& ar, auto& self) { ar(self.is_present_, self.pose_); }
 
     ToolDef def_;
-    bool is_present_ = false, is_leaving_ = false, has_just_left_ = false;
-    Pose pose_ = {};    // at present
-    Pose target_ = {};  // at the end of the next step
+    bool is_present_ = false, has_just_left_ = false;
+    Pose pose_ = {};  // at present
+    // In a step; between two steps the target is the pose.
+    Pose target_ = {};  // at the end
+    bool is_leaving_ = false;
     std::optional<Pose> pose_before_end_ = {};
 };
 

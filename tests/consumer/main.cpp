@@ -18,9 +18,8 @@ int main() {
     const sim::ToolId knife =
         world.add_tool({.name = "knife", .shape = cutting::PlaneCut{{0, 0, 0.052}, Vec3::UnitZ()}});
     const Pose turned{Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Vec3::UnitX())), {1, 2, 3}};
-    world.set_tool_pose(knife, turned);
-    world.withdraw_tool(knife);
-    const auto num_edits = world.step(0.5 * world.stable_step()).edits.size();
+    const auto inputs = sim::StepInputs().move(knife, turned).withdraw(knife);
+    const auto num_edits = world.step(0.5 * world.stable_step(), inputs).edits.size();
     const std::string bytes = world.save();
     for (int i = 0; i < 20; ++i) world.step(0.5 * world.stable_step());
     const double fall = world.model().totals().momentum.z() + 9.81 * world.time();

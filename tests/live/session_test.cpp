@@ -83,10 +83,10 @@ TEST(Session, FeelsWhatAGrasperHolds) {
         session.execute(move("jaws", 0.02, 0.02, 0.05 + 0.001 * i));
         session.tick();
     }
-    EXPECT_LT(session.find("jaws")->force.z(), 0.0);
+    EXPECT_LT(session.tool_forces().of(session.find("jaws")->id).force.z(), 0.0);
     session.execute(order(R"({"open":"jaws"})"));
     session.tick();
-    EXPECT_EQ(session.find("jaws")->force.norm(), 0.0);
+    EXPECT_EQ(session.tool_forces().of(session.find("jaws")->id).force.norm(), 0.0);
 }
 
 TEST(Session, WarnsOfJawsAndThreadsThatHoldNothing) {

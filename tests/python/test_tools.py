@@ -45,6 +45,26 @@ class Tools(unittest.TestCase):
         self.assertEqual(body.save(), before)
         self.assertEqual(body.step().edits, [])
 
+    def test_force_is_the_mean_of_the_call(self) -> None:
+        """Many calls of one step feel the impulse of one call of many steps."""
+        one, many = support.world(), support.world()
+        dt = 0.5 * one.stable_step
+        n = 200
+        top = one.positions[:, 2].max()
+        start, end = incise.Pose([0.05, 0.01, top + 0.0101]), incise.Pose([0.05, 0.01, top + 0.007])
+        balls = [body.add_tool("ball", PROBE, start) for body in (one, many)]
+        balls[0].pose = end
+        report = one.step(dt, n=n)
+        impulse = np.zeros(3)
+        for i in range(n):
+            part = (i + 1) / n
+            balls[1].pose = incise.Pose((1 - part) * start.position + part * end.position)
+            impulse += dt * many.step(dt).tool_forces["ball"]
+        self.assertGreater(balls[0].force[2], 0.0)
+        np.testing.assert_array_equal(balls[0].force, report.tool_forces["ball"])
+        np.testing.assert_allclose(balls[0].force, impulse / (n * dt), rtol=1e-6, atol=1e-9)
+        self.assertEqual(one.ledger()["force_ball_z"], balls[0].force[2])
+
     def test_tool_goes_evenly_during_a_call(self) -> None:
         """One call of many steps cuts as many calls of one step each."""
         one, many = support.world(), support.world()

@@ -308,6 +308,32 @@ class Definitions(unittest.TestCase):
         self.assertEqual((body.end_time, body.name), (0.25, "beam"))
         self.assertEqual(body.output_interval, 0.01)
 
+    def test_warnings_of_runs_are_given_while_stepping(self) -> None:
+        """A probe that begins in the tissue is told of once, at the call in which it overlaps."""
+        body = support.world()
+        ball = body.add_tool("ball", {"kind": "probe", "shape": {"sphere": {"radius": 0.01}}})
+        ball.place(incise.Pose([0.06, 0.02, 0.04]))
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            body.step()
+            body.step(n=3)
+        self.assertEqual(len(caught), 1)
+        self.assertIn("surfaces overlapped by up to", str(caught[0].message))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            other = support.world()
+            other.restore(body.save())
+            other.step(n=3)  # the bytes say that it was told
+
+    def test_world_without_end_warns_of_no_late_times(self) -> None:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            for dynamics in ({}, {"mode": "static"}):
+                support.world(dynamics=dynamics, damping=None, loads=[
+                    {"name": "pull", "where": {"box": {"min": [0.11, -1, -1], "max": [1, 1, 1]}},
+                     "nodal_force": [1e-3, 0, 0],
+                     "factor": [{"time": 0, "value": 0}, {"time": 2e6, "value": 1}]}])
+
     def test_warnings_reach_python(self) -> None:
         far = {"kind": "blade", "edge": [[0, 0, 0], [0, 1, 0]],
                "path": [{"time": 0, "at": [9, 0, 0]}, {"time": 1, "at": [9, 0, -1]}]}

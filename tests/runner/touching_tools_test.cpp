@@ -55,6 +55,88 @@ TEST(TouchingTools, ASutureIsTiedAndDrawnAtItsTimes) {
     EXPECT_EQ(simulation.warnings(), std::vector<std::string>{});
 }
 
+/// Sums what each step says of a tool, and compares the means with the rows of the history.
+class ImpulseCheck : public Observer {
+  public:
+    int num_rows = 0;
+    double largest = 0.0;  // N
+
+    void on_edit(const Simulation& simulation, const sim::EditRecord&) override {
+        take_step(simulation);
+        compare(simulation);
+    }
+    void on_frame(const Simulation& simulation) override {
+        take_step(simulation);
+        compare(simulation);
+    }
+    void on_step(const Simulation& simulation) override { take_step(simulation); }
+
+  private:
+    void take_step(const Simulation& simulation) {
+        if (simulation.num_steps() == num_steps_) return;
+        num_steps_ = simulation.num_steps();
+        const sim::StepReport& step = simulation.world().report();
+        if (row_is_over_) {
+            impulse_.setZero();
+            from_ = step.from;
+            row_is_over_ = false;
+        }
+        for (const sim::ToolState& tool : step.tools)
+            impulse_ += (step.to - step.from) * tool.force;
+    }
+    void compare(const Simulation& simulation) {
+        const double duration = simulation.time() - from_;
+        row_is_over_ = true;
+        if (duration == 0.0) return;
+        const Vec3 mean = impulse_ / duration;
+        largest = std::max(largest, mean.norm());
+        ++num_rows;
+        EXPECT_NEAR(value_of(simulation, "force_ball_x"), mean.x(), 1e-12 * (1.0 + mean.norm()));
+        EXPECT_NEAR(value_of(simulation, "force_ball_z"), mean.z(), 1e-12 * (1.0 + mean.norm()));
+    }
+
+    Vec3 impulse_ = Vec3::Zero();  // N s, since from_
+    double from_ = 0.0;            // s
+    std::uint64_t num_steps_ = 0;
+    bool row_is_over_ = false;
+};
+
+TEST(TouchingTools, ForcesOfARowAreMeansSinceTheRowBefore) {
+    const RunFolder folder;
+    // The ball presses while a carver makes edits between the frames.
+    const scenario::Scenario pressed = folder.scenario(soft_cube + dynamics(0.1) + R"(
+[[tool]]
+kind = "probe"
+name = "ball"
+shape = { sphere = { radius = 0.02 } }
+path = [{ time = 0, at = [0.05, 0.05, 0.121] }, { time = 0.1, at = [0.055, 0.05, 0.105] }]
+[[tool]]
+kind = "carver"
+shape = { sphere = { radius = 0.03 } }
+path = [{ time = 0.033, at = [0, 0, 0] }, { time = 0.077, at = [0.1, 0.05, 0] }]
+[output]
+interval = 0.02
+)");
+    Simulation simulation(pressed);
+    ImpulseCheck check;
+    simulation.add_observer(check);
+    simulation.start();
+    while (!simulation.is_finished()) simulation.step();
+    EXPECT_GT(simulation.edits().size(), 1u);
+    EXPECT_GT(check.num_rows, 6);
+    EXPECT_GT(check.largest, 0.01);
+    // A run that is resumed between two rows has the same means.
+    Simulation halted(pressed), resumed(pressed);
+    halted.start();
+    while (halted.time() < 0.049) halted.step();
+    ArchiveWriter state;
+    halted.save(state);
+    ArchiveReader reader(state.bytes());
+    resumed.restore(reader);
+    while (!resumed.is_finished()) resumed.step();
+    EXPECT_EQ(value_of(resumed, "force_ball_z"), value_of(simulation, "force_ball_z"));
+}
+
 TEST(TouchingTools, ASutureThatTearsIsReportedOnce) {
     const RunFolder folder;
     Simulation simulation(

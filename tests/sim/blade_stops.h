@@ -91,14 +91,14 @@ inline StoppedOutcome cut_with_stops(const StoppedCut& c, std::span<const double
             {"second", cutting::Blade{{{2.25 * h, -0.4 * h, 0}, {2.25 * h, 2.2 * h, 0}},
                                       cutting::CutMode::split,
                                       c.snap}}));
-    const auto lead = [&](double x) {
-        world.set_tool_pose(blades[0], at({x * h, 0, 0}));
-        if (blades.size() > 1) world.set_tool_pose(blades[1], at({0, 0, x * h}));
+    const auto pose = [&](std::size_t blade, double x) {
+        return at(blade == 0 ? Vec3(x * h, 0, 0) : Vec3(0, 0, x * h));
     };
+    for (std::size_t b = 0; b < blades.size(); ++b) world.place_tool(blades[b], pose(b, -1.0));
     StoppedOutcome outcome;
-    lead(-1.0);
-    const auto step = [&] {
-        for (const Edit& edit : world.step(dt).edits) outcome.cut_area += edit.record.cut_area;
+    const auto step = [&](const StepInputs& inputs) {
+        for (const Edit& edit : world.step(dt, inputs).edits)
+            outcome.cut_area += edit.record.cut_area;
         for (std::size_t b = 0; b < blades.size(); ++b)
             outcome.num_contradictory +=
                 world.cutter().contradictory_faces({b}, world.mesh()).size();
@@ -109,14 +109,16 @@ inline StoppedOutcome cut_with_stops(const StoppedCut& c, std::span<const double
             world = std::move(other);
         }
     };
-    for (const double x : stops) {
-        lead(x);
-        step();
-    }
+    const auto lead = [&](double x) {
+        StepInputs inputs;
+        for (std::size_t b = 0; b < blades.size(); ++b) inputs.move(blades[b], pose(b, x));
+        step(inputs);
+    };
+    for (const double x : stops) lead(x);
     lead(6.0);
-    step();
-    for (const ToolId blade : blades) world.withdraw_tool(blade);
-    step();
+    StepInputs withdrawal;
+    for (const ToolId blade : blades) withdrawal.withdraw(blade);
+    step(withdrawal);
     outcome.num_components = topology::components(world.mesh()).count;
     return outcome;
 }

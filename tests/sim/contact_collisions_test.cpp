@@ -49,9 +49,8 @@ ToolId add_wall(World& world, bool is_there = true) {
 TEST(ContactCollisions, EqualBarsCutFromOneSwapVelocities) {
     const int cells = test::num_cases(120);
     World world = bar(2.0 * bar_length, 2 * cells);
-    cut_along(world, {bar_length, 0, 0}, Vec3::UnitX());
     const double dt = 0.5 * world.rest_stable_step();
-    world.step(dt);
+    world.step(dt, cut_along(world, {bar_length, 0, 0}, Vec3::UnitX()));
     const auto left = elements_where(world, [](const Vec3& x) { return x.x() < bar_length; });
     const auto right = elements_where(world, [](const Vec3& x) { return x.x() > bar_length; });
     const auto velocity = [&](const std::vector<CellId>& of) {
@@ -156,9 +155,8 @@ double loss_of_a_collision(double friction) {
     def.contact.friction = friction;
     World world(std::move(def));
     const Vec3 point(0.05, 0.05, 0.049), normal(0.2, 0.1, 1.0);
-    cut_along(world, point, normal);
     const double dt = 0.2 * world.rest_stable_step();
-    world.step(dt);
+    world.step(dt, cut_along(world, point, normal));
     const auto part = [&](double side) {
         return elements_where(world,
                               [&](const Vec3& x) { return side * (x - point).dot(normal) > 0.0; });

@@ -169,8 +169,7 @@ double push_up_a_cut(double friction) {
     def.contact.friction = friction;
     World world = held(World(std::move(def)));
     const Vec3 point(0.02, 0.01, 0.0195), normal(-wedge_slope, 0.0, 1.0);
-    cut_along(world, point, normal);
-    world.step(0.8 * world.stable_step());
+    world.step(0.8 * world.stable_step(), cut_along(world, point, normal));
     const auto block =
         elements_where(world, [&](const Vec3& x) { return (x - point).dot(normal) > 0.0; });
     push_along_x(world, 0.005, [](const Vec3& x) { return x.x() < 1e-9 && x.z() > 0.02; });
@@ -204,8 +203,7 @@ double slip_of_a_cut(double slope, double friction) {
     def.contact.friction = friction;
     World world = held(World(std::move(def)));
     const Vec3 point(0.02, 0.02, 0.034), normal(-slope, 0.0, 1.0);
-    cut_along(world, point, normal);
-    world.step(0.8 * world.stable_step());
+    world.step(0.8 * world.stable_step(), cut_along(world, point, normal));
     physics::Load load{.name = "pressure"};
     load.kind = physics::TractionLoad{
         physics::FaceSet(faces_where(world, [](const Vec3& x) { return x.z() > height - 1e-9; })),

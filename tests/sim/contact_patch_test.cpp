@@ -34,7 +34,8 @@ struct PressedCube {
 };
 constexpr double pressed_down = 0.1 * size;  // m
 
-using CutWorld = std::function<void(World&)>;
+/// Adds a cut. Returns the inputs of the step in which it cuts.
+using CutWorld = std::function<StepInputs(World&)>;
 
 PressedCube press_cube(Plates plates, double friction, const CutWorld& cut) {
     WorldDef def;
@@ -54,8 +55,7 @@ PressedCube press_cube(Plates plates, double friction, const CutWorld& cut) {
         constrain(world, "y", {false, true, false}, [](const Vec3& x) { return x.y() < 1e-9; });
     }
     const std::size_t num_nodes = world.mesh().num_nodes();
-    if (cut) cut(world);
-    run_until(world, 2.0);
+    run_until(world, 2.0, cut ? cut(world) : StepInputs());
     PressedCube pressed{world.reaction(world.constraints()[0]).force.z(), {}};
     for (std::size_t n = 0; n < num_nodes; ++n)
         pressed.displacements.push_back(world.positions()[n] -
@@ -63,8 +63,9 @@ PressedCube press_cube(Plates plates, double friction, const CutWorld& cut) {
     return pressed;
 }
 
-/// Cuts along a surface z(x, y) that ends at `x_end`.
-void cut_along_surface(World& world, double x_end, const std::function<double(double, double)>& z) {
+/// Adds a surface z(x, y) that ends at `x_end`. Returns the inputs of the step in which it cuts.
+StepInputs cut_along_surface(World& world, double x_end,
+                             const std::function<double(double, double)>& z) {
     constexpr int n = 24;
     constexpr double low = -0.01, high = size + 0.01;
     topology::SurfaceData surface;
@@ -80,8 +81,7 @@ void cut_along_surface(World& world, double x_end, const std::function<double(do
             surface.triangles.push_back({a, c + 1, c});
         }
     const ToolId tool = world.add_tool({"surface", cutting::SurfaceCut{std::move(surface)}});
-    world.set_tool_pose(tool, Pose());
-    world.withdraw_tool(tool);
+    return StepInputs().move(tool, Pose()).withdraw(tool);
 }
 
 /// Returns the mean distance of displacements, over that of the lid: root of the mean square.
@@ -101,7 +101,9 @@ TEST(ContactPatch, OfAClosedCutIsThatOfNoCut) {
                       0.0);
         EXPECT_LT(distance_of(cut, whole), tolerance) << what;
     };
-    const auto flat = [](World& world) { cut_along(world, {0.05, 0.05, 0.049}, Vec3::UnitZ()); };
+    const auto flat = [](World& world) {
+        return cut_along(world, {0.05, 0.05, 0.049}, Vec3::UnitZ());
+    };
     expect_whole("flat, no friction", press_cube(Plates::slippery, 0.0, {}),
                  press_cube(Plates::slippery, 0.0, flat));
 
@@ -112,17 +114,17 @@ TEST(ContactPatch, OfAClosedCutIsThatOfNoCut) {
     const std::array<Case, 3> cases{
         {{"tilted 0.3, friction 0.5",
           [](World& world) {
-              cut_along(world, {0.05, 0.05, 0.049}, {-0.3, 0.0, 1.0});
+              return cut_along(world, {0.05, 0.05, 0.049}, {-0.3, 0.0, 1.0});
           }},
          {"curved, friction 0.5",
           [](World& world) {
-              cut_along_surface(world, size + 0.01, [](double x, double y) {
+              return cut_along_surface(world, size + 0.01, [](double x, double y) {
                   return 0.06 - 3.0 * ((x - 0.05) * (x - 0.05) + (y - 0.05) * (y - 0.05));
               });
           }},
          {"half cut, friction 0.5", [](World& world) {
-              cut_along_surface(world, 0.047,
-                                [](double x, double) { return 0.049 + 0.3 * (x - 0.05); });
+              return cut_along_surface(world, 0.047,
+                                       [](double x, double) { return 0.049 + 0.3 * (x - 0.05); });
           }}}};
     const PressedCube whole = press_cube(Plates::glued, 0.0, {});
     for (const Case& c : test::some_of(cases)) {
@@ -153,8 +155,8 @@ World press_column(topology::MeshData mesh, double strain, bool is_cut) {
     constrain(
         world, "lid", all, [](const Vec3& x) { return x.z() > 2.0 * block - 1e-9; },
         strain * 2.0 * block, 0.3);
-    if (is_cut) cut_along(world, {0.05, 0.05, block}, Vec3::UnitZ());
-    run_until(world, 1.5);
+    run_until(world, 1.5,
+              is_cut ? cut_along(world, {0.05, 0.05, block}, Vec3::UnitZ()) : StepInputs());
     return world;
 }
 
@@ -251,8 +253,8 @@ TEST(ContactPatch, OfABoxThatRestsExertsASteadyForce) {
     while (world.time() < time) {
         const double dt = 0.8 * world.stable_step();
         const double part = std::min(1.0, (world.time() + dt) / time);
-        world.set_tool_pose(box_tool, at({0.05, 0.05, size + 0.5 * edge - part * 0.002}));
-        world.step(dt);
+        const Pose pose = at({0.05, 0.05, size + 0.5 * edge - part * 0.002});
+        world.step(dt, StepInputs().move(box_tool, pose));
     }
     run_until(world, 3.0 * time);
     double sum = 0.0, least = std::numeric_limits<double>::infinity(), most = 0.0;

@@ -98,8 +98,7 @@ class DrawnBall {
         while (world_.time() < begin + duration) {
             const double dt = 0.8 * world_.stable_step();
             const double part = std::min(1.0, (world_.time() + dt - begin) / duration);
-            world_.set_tool_pose(tool_, at(from + part * by));
-            world_.step(dt);
+            world_.step(dt, StepInputs().move(tool_, at(from + part * by)));
         }
         run_until(world_, begin + duration + wait);
     }
@@ -153,8 +152,7 @@ class Indented {
         while (world_.time() < begin + duration) {
             const double dt = 0.8 * world_.stable_step();
             const double part = std::min(1.0, (world_.time() + dt - begin) / duration);
-            world_.set_tool_pose(tool_, at(from - part * by * Vec3::UnitZ()));
-            world_.step(dt);
+            world_.step(dt, StepInputs().move(tool_, at(from - part * by * Vec3::UnitZ())));
         }
         run_until(world_, begin + duration + wait);
         return 4.0 * world_.report().tools[0].force.z();
@@ -377,9 +375,7 @@ struct Penny {
         }
         for (std::int64_t i = 1; i <= num_points; ++i) disc.triangles.push_back({0, i, i + 1});
         const ToolId tool = world.add_tool({"disc", cutting::SurfaceCut{std::move(disc)}});
-        world.set_tool_pose(tool, Pose());
-        world.withdraw_tool(tool);
-        world.step(0.8 * world.stable_step());
+        world.step(0.8 * world.stable_step(), StepInputs().move(tool, Pose()).withdraw(tool));
     }
 };
 

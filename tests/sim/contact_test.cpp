@@ -24,9 +24,9 @@ WorldDef cube_at_rest(double friction = 0.0) {
 
 TEST(Contact, OfAFreshCutExertsNoForce) {
     World world(cube_at_rest(0.3));
-    cut_along(world, {0.05, 0.05, 0.049}, {0.3, 0.1, 1.0});
-    for (int i = 0; i < 1000; ++i) {
-        const StepReport& report = world.step(0.8 * world.stable_step());
+    StepInputs inputs = cut_along(world, {0.05, 0.05, 0.049}, {0.3, 0.1, 1.0});
+    for (int i = 0; i < 1000; ++i, inputs.clear()) {
+        const StepReport& report = world.step(0.8 * world.stable_step(), inputs);
         ASSERT_EQ(report.contact.num_points, 0u);
     }
     EXPECT_EQ(world.report().contact.dissipation, 0.0);
@@ -105,8 +105,8 @@ double pressing_force(double friction, bool is_cut) {
     def.mesh = cube(6);
     def.damping = 30.0;
     World world = pressed(std::move(def));
-    if (is_cut) cut_along(world, {0.05, 0.05, 0.049}, {0.3, 0.1, 1.0});
-    run_until(world, 1.2);
+    run_until(world, 1.2,
+              is_cut ? cut_along(world, {0.05, 0.05, 0.049}, {0.3, 0.1, 1.0}) : StepInputs());
     return world.reaction(world.constraints()[0]).force.z();
 }
 
@@ -138,10 +138,9 @@ Ball ball_above(double friction, double radius = 0.02) {
 void move_tool(World& world, ToolId tool, const Vec3& to, double duration) {
     const Vec3 from = world.tool_pose(tool).position;
     const int num_steps = static_cast<int>(std::ceil(duration / (0.8 * world.stable_step())));
-    for (int i = 1; i <= num_steps; ++i) {
-        world.set_tool_pose(tool, at(from + (to - from) * i / num_steps));
-        world.step(duration / num_steps);
-    }
+    for (int i = 1; i <= num_steps; ++i)
+        world.step(duration / num_steps,
+                   StepInputs().move(tool, at(from + (to - from) * i / num_steps)));
 }
 
 TEST(Contact, OfABallExertsWhatTheFloorBears) {
@@ -193,16 +192,16 @@ TEST(Contact, OfASolidIsThatOfItsShape) {
 // The parts of a step are so short that the ball does not pass through the surface.
 TEST(Contact, OfAFastSmallBallIsNotMissed) {
     auto [world, ball] = ball_above(0.0, 0.003);
-    world.set_tool_pose(ball, at({0.05, 0.05, size - 0.01}));
-    EXPECT_GT(world.step(0.5 * world.stable_step()).num_parts, 10u);
+    const auto down = StepInputs().move(ball, at({0.05, 0.05, size - 0.01}));
+    EXPECT_GT(world.step(0.5 * world.stable_step(), down).num_parts, 10u);
     double above = 0.0;
     for (const VertexId n : nodes_where(world, [](const Vec3& x) {
              return x.z() == size && std::hypot(x.x() - 0.05, x.y() - 0.05) < 1e-9;
          }))
         above = world.positions()[n.index()].z();
     EXPECT_LT(above, size - 0.01 - 0.0029);
-    world.set_tool_pose(ball, at({0.05, 0.05, 100.0}));
-    EXPECT_NE(input_error_of([&] { world.step(0.5 * world.stable_step()); }).find("parts"),
+    const auto far_up = StepInputs().move(ball, at({0.05, 0.05, 100.0}));
+    EXPECT_NE(input_error_of([&] { world.step(0.5 * world.stable_step(), far_up); }).find("parts"),
               std::string::npos);
 }
 
@@ -218,8 +217,8 @@ TEST(Contact, InAStepOfPartsBalancesMomentum) {
     double largest = 0.0;
     for (int i = 1; i <= 10; ++i) {
         const auto before = world.ledger().body_totals().totals;
-        world.set_tool_pose(ball, at({0.05, 0.05, size + radius - move * i}));
-        const StepReport& report = world.step(dt);
+        const StepReport& report =
+            world.step(dt, StepInputs().move(ball, at({0.05, 0.05, size + radius - move * i})));
         EXPECT_GT(report.num_parts, 1u);
         const Vec3 force = world.reaction(world.constraints()[0]).force - report.tools[0].force +
                            before.mass * Vec3(0, 0, -9.81);
@@ -251,11 +250,11 @@ TEST(Contact, BesideAMovingLidTakesEnergyAndGivesNone) {
     WorldDef def = cube_at_rest();
     def.damping = 20.0;
     World world = pressed(std::move(def));
-    cut_along(world, {0.05, 0.05, 0.9 * size}, {0.0, 0.02, 1.0});
+    StepInputs inputs = cut_along(world, {0.05, 0.05, 0.9 * size}, {0.0, 0.02, 1.0});
     double work = 0.0;  // of the lid
-    for (int i = 0; i < 400; ++i) {
+    for (int i = 0; i < 400; ++i, inputs.clear()) {
         const double dt = 1e-3;
-        world.step(dt);
+        world.step(dt, inputs);
         work += world.reaction(world.constraints()[1]).force.z() * -pressed_by / pressed_in * dt;
     }
     EXPECT_GT(work, 1e-4);
@@ -266,23 +265,20 @@ TEST(Contact, BesideAMovingLidTakesEnergyAndGivesNone) {
 
 // Cut, pressed and slid, with impulses to begin with: the same bits after a pause, on two threads.
 TEST(Contact, GoesOnWithTheSameBitsAfterRestore) {
-    const auto begin = [] {
-        Ball b = ball_above(0.3);
-        cut_along(b.world, {0.05, 0.05, 0.07}, {0.1, 0.05, 1.0});
-        return b;
-    };
     const auto press = [](Ball& b, int from, int to) {
         for (int i = from; i < to; ++i) {
-            b.world.set_tool_pose(b.ball, at({0.05 + 2e-5 * i, 0.05, size + 0.02 - 4e-5 * i}));
-            b.world.step(0.8 * b.world.stable_step());
+            StepInputs inputs;
+            if (i == 0) inputs = cut_along(b.world, {0.05, 0.05, 0.07}, {0.1, 0.05, 1.0});
+            inputs.move(b.ball, at({0.05 + 2e-5 * i, 0.05, size + 0.02 - 4e-5 * i}));
+            b.world.step(0.8 * b.world.stable_step(), inputs);
         }
     };
-    Ball whole = begin();
+    Ball whole = ball_above(0.3);
     press(whole, 0, 300);
     EXPECT_GT(whole.world.report().contact.num_points, 20u);
     const std::string end = whole.world.save();
     for (const int pause : {3, 150, 299}) {
-        Ball first = begin(), second = begin();
+        Ball first = ball_above(0.3), second = ball_above(0.3);
         press(first, 0, pause);
         second.world.restore(first.world.save());
         second.world.set_num_threads(2);
@@ -402,9 +398,10 @@ TEST(Contact, OfAGrasperSlipsAboveItsLargestForce) {
 TEST(Contact, OfAGrasperGoesOnWithTheSameBitsAfterRestore) {
     const auto pull = [](Held& h, int from, int to) {
         for (int i = from; i < to; ++i) {
-            if (i == 40) cut_along(h.world, {0.05, 0.05, 0.01}, {1.0, 0.2, 0.1});
-            h.world.set_tool_pose(h.grasper, at({0.05, 0.05, -1e-4 * i}));
-            h.world.step(0.8 * h.world.stable_step());
+            StepInputs inputs;
+            if (i == 40) inputs = cut_along(h.world, {0.05, 0.05, 0.01}, {1.0, 0.2, 0.1});
+            inputs.move(h.grasper, at({0.05, 0.05, -1e-4 * i}));
+            h.world.step(0.8 * h.world.stable_step(), inputs);
         }
     };
     Held whole = held_by_grasper(0.2);

@@ -34,18 +34,16 @@ World pressed_world(const Pressed& c) {
     const auto top = nodes_where(world, [&](const Vec3& x) { return x.z() > height - 1e-9; });
     const ConstraintId plate = world.grasp("plate", top, at({0, 0, height}));
     while (world.time() < 0.2) {
-        world.set_grasp_pose(
-            plate, at({0, 0, height * (1.0 - c.strain * std::min(1.0, world.time() / 0.15))}));
-        world.step(0.8 * world.stable_step());
+        const double strain = c.strain * std::min(1.0, world.time() / 0.15);
+        world.step(0.8 * world.stable_step(),
+                   StepInputs().move(plate, at({0, 0, height * (1.0 - strain)})));
     }
     return world;
 }
 
 void cut(World& world, const cutting::PlaneCut& plane) {
     const ToolId tool = world.add_tool({"plane", plane});
-    world.set_tool_pose(tool, Pose());
-    world.withdraw_tool(tool);
-    world.step(0.8 * world.stable_step());
+    world.step(0.8 * world.stable_step(), StepInputs().move(tool, Pose()).withdraw(tool));
 }
 void cut(World& world, double snap) {
     cut(world, cutting::PlaneCut{{0.02, 0.02, 0.0201}, Vec3(0.2, 0.1, 1), snap});

@@ -28,15 +28,16 @@ class CutsAtRest {
     static constexpr int num_steps = 44;
 
     const StepReport& step(int i) {
+        StepInputs inputs;
         for (Stroke& stroke : strokes_) {
             if (i == stroke.begin) world_.place_tool(stroke.tool, {stroke.rotation, stroke.from});
             if (i < stroke.begin || i >= stroke.end) continue;
             const double part = (i + 1.0 - stroke.begin) / (stroke.end - stroke.begin);
-            world_.set_tool_pose(stroke.tool,
-                                 {stroke.rotation, stroke.from + part * (stroke.to - stroke.from)});
-            if (i + 1 == stroke.end) world_.withdraw_tool(stroke.tool);
+            inputs.move(stroke.tool,
+                        {stroke.rotation, stroke.from + part * (stroke.to - stroke.from)});
+            if (i + 1 == stroke.end) inputs.withdraw(stroke.tool);
         }
-        return world_.step(0.8 * world_.stable_step());
+        return world_.step(0.8 * world_.stable_step(), inputs);
     }
 
     const World& world() const { return world_; }

@@ -54,8 +54,7 @@ Cut draw_wire(World world, const ToolDef& def) {
     while (world.time() < (to - from) / speed) {
         const double x = from + speed * world.time();
         const double end = std::min(world.time() + 0.8 * world.stable_step(), (to - from) / speed);
-        world.set_tool_pose(tool, pose(from + speed * end));
-        cut.last = world.step_to(end);
+        cut.last = world.step_to(end, StepInputs().move(tool, pose(from + speed * end)));
         const Vec3 force = cut.last.tools.at(0).force;
         cut.work -= force.x() * (from + speed * end - x);
         cut.largest_force = std::max(cut.largest_force, -force.x());
@@ -90,8 +89,8 @@ TEST(CuttingForce, ThatIsReportedChangesNothingElse) {
         const ToolId tool = world.add_tool(wire(toughness, CuttingForce::report));
         world.place_tool(tool, at({-0.08, 0.5 * size, 0.507 * size}));
         for (int i = 1; i <= 60; ++i) {
-            world.set_tool_pose(tool, at({-0.08 + 0.0025 * i, 0.5 * size, 0.507 * size}));
-            world.step(0.5 * world.rest_stable_step());
+            const Pose pose = at({-0.08 + 0.0025 * i, 0.5 * size, 0.507 * size});
+            world.step(0.5 * world.rest_stable_step(), StepInputs().move(tool, pose));
         }
         return std::vector<Vec3>(world.positions().begin(), world.positions().end());
     };
@@ -132,8 +131,8 @@ TEST(CuttingForce, BelowItsThresholdOnlyPushes) {
     world.place_tool(tool, pose(-0.001));
     double area = 0.0;
     for (int i = 1; i <= 2000; ++i) {
-        world.set_tool_pose(tool, pose(std::min(-0.001 + 4e-6 * i, 0.003)));
-        for (const Edit& edit : world.step(0.8 * world.stable_step()).edits)
+        const auto inputs = StepInputs().move(tool, pose(std::min(-0.001 + 4e-6 * i, 0.003)));
+        for (const Edit& edit : world.step(0.8 * world.stable_step(), inputs).edits)
             area += edit.record.cut_area;
     }
     EXPECT_LT(area, 0.1 * (size / 6) * size);
@@ -150,10 +149,8 @@ TEST(CuttingForce, GoesOnBitForBitAfterARestore) {
     const auto pose = [](int i) { return at({-0.08 + 0.0005 * i, 0.5 * size, 0.507 * size}); };
     world.place_tool(tool, pose(0));
     const auto go = [&](World& one, int from, int to) {
-        for (int i = from + 1; i <= to; ++i) {
-            one.set_tool_pose(tool, pose(i));
-            one.step(0.5 * one.rest_stable_step());
-        }
+        for (int i = from + 1; i <= to; ++i)
+            one.step(0.5 * one.rest_stable_step(), StepInputs().move(tool, pose(i)));
     };
     go(world, 0, 200);
     World other(gel(4));

@@ -33,15 +33,15 @@ World stretched_and_cut(double jitter, std::uint64_t seed) {
     World world(std::move(def));
     while (world.time() < held_until) world.step_to(std::min(held_until, world.time() + 0.01));
     test::Random random(seed);
+    StepInputs inputs;
     for (int i = 0; i < 3; ++i) {
         const Vec3 point = Vec3::Constant(0.5) + random.vector(0.15);
         const Vec3 normal = random.vector(1.0);
         const ToolId knife =
             world.add_tool({"knife", cutting::PlaneCut{point.cwiseProduct(stretch), normal}});
-        world.set_tool_pose(knife, Pose());
-        world.withdraw_tool(knife);
+        inputs.move(knife, Pose()).withdraw(knife);
     }
-    world.step(1e-6);
+    world.step(1e-6, inputs);
     while (!world.constraints().empty()) world.release(world.constraints()[0]);
     return world;
 }

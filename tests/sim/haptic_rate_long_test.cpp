@@ -96,8 +96,7 @@ TEST_P(HapticForce, OfAProbeThatSlidesOverTheLiverIsSmooth) {
             static_cast<int>(std::ceil((to - from) / (0.8 * world.stable_step())));
         for (int k = 1; k <= num_steps; ++k) {
             const double time = k == num_steps ? to : from + (to - from) * k / num_steps;
-            world.set_tool_pose(probe, pose(time));
-            const StepReport& report = world.step_to(time);
+            const StepReport& report = world.step_to(time, StepInputs().move(probe, pose(time)));
             impulse += (report.to - report.from) * report.tools.at(0).force;
         }
         const double force = impulse.norm() / (to - from);

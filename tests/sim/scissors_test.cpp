@@ -95,9 +95,10 @@ struct Outcome {
     std::size_t num_edits = 0;
 };
 
-void step(World& world, const Snip& s, int num_steps, Outcome& sum) {
-    for (int i = 0; i < num_steps; ++i) {
-        for (const Edit& edit : world.step(step_of(world, s)).edits) {
+/// @param inputs  of the first step
+void step(World& world, const Snip& s, int num_steps, Outcome& sum, StepInputs inputs = {}) {
+    for (int i = 0; i < num_steps; ++i, inputs.clear()) {
+        for (const Edit& edit : world.step(step_of(world, s), inputs).edits) {
             sum.area += edit.record.cut_area;
             ++sum.num_edits;
         }
@@ -234,8 +235,7 @@ TEST(Scissors, CutNothingWhileTheyOpen) {
         world.open_tool(tool);
         Pose pose = across_strip(s);
         pose.position.y() += away;
-        world.set_tool_pose(tool, pose);
-        step(world, s, 3, done);
+        step(world, s, 3, done, StepInputs().move(tool, pose));
         EXPECT_FALSE(world.report().tools.at(0).is_in_tissue);
     }
     EXPECT_EQ(moved.area, still.area);
@@ -269,8 +269,7 @@ TEST(Scissors, CutNothingWhileTheyAreOpen) {
     for (const double y : {0.0, 0.01, 0.02, 0.03}) {
         Pose pose = across_strip(s);
         pose.position.y() = y;
-        world.set_tool_pose(tool, pose);
-        step(world, s, 1, done);
+        step(world, s, 1, done, StepInputs().move(tool, pose));
     }
     EXPECT_EQ(done.num_edits, 0U);
 }
@@ -284,8 +283,7 @@ TEST(Scissors, EndTheirCutWhenTheyLeave) {
     Outcome done;
     world.close_tool(tool);
     step(world, s, 4, done);
-    world.withdraw_tool(tool);
-    step(world, s, 1, done);
+    step(world, s, 1, done, StepInputs().withdraw(tool));
     EXPECT_FALSE(world.is_tool_present(tool));
     EXPECT_FALSE(world.is_tool_closed(tool));
     EXPECT_GT(done.num_edits, 0U);

@@ -86,15 +86,15 @@ inline ToolDef scalpel(CutMode mode = CutMode::split) {
 
 inline Pose at(const Vec3& position) { return {Eigen::Quaterniond::Identity(), position}; }
 
-/// Cuts along a plane in the next step.
-inline void cut_along(World& world, const Vec3& point, const Vec3& normal) {
+/// Adds a plane. Returns the inputs of the step in which it cuts.
+[[nodiscard]] inline StepInputs cut_along(World& world, const Vec3& point, const Vec3& normal) {
     const ToolId plane = world.add_tool({"plane", cutting::PlaneCut{point, normal}});
-    world.set_tool_pose(plane, Pose());
-    world.withdraw_tool(plane);
+    return StepInputs().move(plane, Pose()).withdraw(plane);
 }
 
-inline void run_until(World& world, double time) {
-    while (world.time() < time) world.step(0.8 * world.stable_step());
+/// @param inputs  of the first step
+inline void run_until(World& world, double time, StepInputs inputs = {}) {
+    for (; world.time() < time; inputs.clear()) world.step(0.8 * world.stable_step(), inputs);
 }
 
 /// Where the scalpel is after so much of its way through the cube.
@@ -139,9 +139,10 @@ class Session {
         load_ = world_.loads().empty() ? LoadId() : world_.loads().back();
     }
     void step(int i) {
+        StepInputs inputs;
         if (i == 5) world_.place_tool(knife_, scalpel_pose(0.0));
-        if (i >= 5 && i < 35) world_.set_tool_pose(knife_, scalpel_pose((i - 4) / 30.0));
-        if (i == 34) world_.withdraw_tool(knife_);
+        if (i >= 5 && i < 35) inputs.move(knife_, scalpel_pose((i - 4) / 30.0));
+        if (i == 34) inputs.withdraw(knife_);
         if (i == 10)
             grasp_ = world_.grasp("hand",
                                   nodes_where(world_,
@@ -149,7 +150,7 @@ class Session {
                                                   return x.z() > 0.99 * size && x.x() < 0.3 * size;
                                               }),
                                   at({0, 0, size}));
-        if (i >= 10 && i < 45) world_.set_grasp_pose(grasp_, at({0, 0, size + 2e-4 * (i - 9)}));
+        if (i >= 10 && i < 45) inputs.move(grasp_, at({0, 0, size + 2e-4 * (i - 9)}));
         if (i == 45) world_.release(grasp_);
         if (i == 20)
             load_ = world_.add_load({.name = "push",
@@ -159,7 +160,7 @@ class Session {
                                          {1e-3, 0, 0}}});
         if (i == 30) world_.set_load_factor(load_, 0.5);
         if (i == 50) world_.remove_load(load_);
-        world_.step(0.5 * world_.stable_step());
+        world_.step(0.5 * world_.stable_step(), inputs);
     }
 
     World world_;

@@ -96,16 +96,16 @@ inline std::optional<std::string> failure_in_a_world(StrainedCut c, double safet
     bool was_cut = false;
     try {
         while (world.time() < StrainedCut::end_at) {
+            StepInputs inputs;
             if (!was_cut && world.time() >= StrainedCut::cut_at) {
                 was_cut = true;
                 if (c.is_released) world.release(world.constraints()[1]);
                 if (c.is_cut) {
                     const ToolId knife = world.add_tool({"knife", c.cut});
-                    world.set_tool_pose(knife, Pose());
-                    world.withdraw_tool(knife);
+                    inputs.move(knife, Pose()).withdraw(knife);
                 }
             }
-            world.step(safety * world.stable_step());
+            world.step(safety * world.stable_step(), inputs);
         }
     } catch (const physics::MotionFailure& failure) {
         return failure.what();

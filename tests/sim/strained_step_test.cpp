@@ -70,13 +70,9 @@ TEST(StrainedStep, DividesLongerSteps) {
 TEST(StrainedStep, GoesOnWithTheSameBitsAfterRestore) {
     const auto run = [](World& world, int from, int to) {
         for (int i = from; i < to; ++i) {
-            if (i == 40) {
-                const ToolId knife =
-                    world.add_tool({"knife", cutting::PlaneCut{Vec3(0.1, 0, 0), Vec3(1, 0.3, 0)}});
-                world.set_tool_pose(knife, Pose());
-                world.withdraw_tool(knife);
-            }
-            world.step((i % 7 == 0 ? 1.0 : 0.8) * world.stable_step());
+            StepInputs inputs;
+            if (i == 40) inputs = cut_along(world, Vec3(0.1, 0, 0), Vec3(1, 0.3, 0));
+            world.step((i % 7 == 0 ? 1.0 : 0.8) * world.stable_step(), inputs);
         }
     };
     World whole = drawn_world();

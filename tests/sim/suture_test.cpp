@@ -47,12 +47,13 @@ cutting::Suture thread(double stiffness = 20.0,
 double tension_of(const World& world) { return world.report().tools.at(0).force.norm(); }
 
 /// Draws a thread to a length while the world makes some steps. Returns the largest tension.
-double draw(World& world, ToolId suture, double length, int num_steps) {
+/// @param inputs  what else happens in the first step
+double draw(World& world, ToolId suture, double length, int num_steps, StepInputs inputs = {}) {
     const double from = world.suture_length(suture);
     double largest = 0.0;
-    for (int i = 1; i <= num_steps; ++i) {
-        world.set_suture_length(suture, from + (length - from) * i / num_steps);
-        world.step(0.8 * world.stable_step());
+    for (int i = 1; i <= num_steps; ++i, inputs.clear()) {
+        inputs.draw(suture, from + (length - from) * i / num_steps);
+        world.step(0.8 * world.stable_step(), inputs);
         largest = std::max(largest, tension_of(world));
     }
     return largest;
@@ -160,8 +161,7 @@ TEST(Suture, DrawnToNothingComesToRest) {
             const ToolId suture = world.add_tool({"thread", zigzag(num_points, stiffness)});
             const ToolId other = world.add_tool({"other", zigzag(3, stiffness, 0.7)});
             for (const ToolId one : {suture, other}) world.tie_suture(one);
-            world.set_suture_length(other, 0.3 * size);
-            draw(world, suture, 0.0, 200);
+            draw(world, suture, 0.0, 200, StepInputs().draw(other, 0.3 * size));
             run_until(world, world.time() + 2.0);
             const physics::Totals totals = world.ledger().body_totals().totals;
             EXPECT_GT(totals.elastic_energy, 1e-4);
@@ -187,12 +187,12 @@ TEST(Suture, DrawsACutTogetherThatComesToRest) {
             {.name = "sides", .nodes = physics::VertexSet(nodes_where(world, [&](const Vec3& x) {
                                   return x.x() == 0.0 || x.x() == edges.x();
                               }))});
-        cut_along(world, {0.0303, 0.0, 0.0}, Vec3::UnitX());
+        const StepInputs cut = cut_along(world, {0.0303, 0.0, 0.0}, Vec3::UnitX());
         cutting::Suture thread{{}, stiffness};
         for (int i = 0; i < 6; ++i)
             thread.points.push_back({i % 2 == 0 ? 0.024 : 0.036, 0.01 * (1 + i / 2), 0.018});
         const ToolId suture = world.add_tool({"thread", thread});
-        world.step(0.8 * world.stable_step());
+        world.step(0.8 * world.stable_step(), cut);
         world.tie_suture(suture);
         draw(world, suture, 0.0, 1500);
         run_until(world, 1.4);
@@ -250,9 +250,7 @@ TEST(Suture, FollowsTheMaterialThroughCuts) {
     world.tie_suture(suture);
     const ToolId plane = world.add_tool(
         {"plane", cutting::PlaneCut{{0.8 * size, 0.45 * size, 0.405 * size}, {0.1, 0.2, 1.0}}});
-    world.set_tool_pose(plane, Pose());
-    world.withdraw_tool(plane);
-    draw(world, suture, 0.58 * size, 20);
+    draw(world, suture, 0.58 * size, 20, StepInputs().move(plane, Pose()).withdraw(plane));
     ASSERT_EQ(world.ledger().num_edits(), 1u);
     draw(world, suture, 0.58 * size, 2000);
     EXPECT_TRUE(world.is_suture_tied(suture));
@@ -308,9 +306,13 @@ TEST(Suture, RefusesWhatItCannotDo) {
     EXPECT_NE(refusal_of(thread(0.0)).find("stiffness is 0"), std::string::npos);
     EXPECT_NE(refusal_of(thread(1.0, 0.0)).find("largest force is 0"), std::string::npos);
     const ToolId suture = world.add_tool({"thread", thread()});
-    EXPECT_NE(input_error_of([&] { world.set_tool_pose(suture, Pose()); }).find("has no pose"),
+    EXPECT_NE(input_error_of([&] {
+                  world.require_possible(StepInputs().move(suture, Pose()));
+              }).find("has no pose"),
               std::string::npos);
-    EXPECT_NE(input_error_of([&] { world.set_suture_length(suture, 0.1); }).find("not tied"),
+    EXPECT_NE(input_error_of([&] {
+                  world.require_possible(StepInputs().draw(suture, 0.1));
+              }).find("not tied"),
               std::string::npos);
     WorldDef without = two_cubes();
     without.contact.enabled = false;

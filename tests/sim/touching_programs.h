@@ -40,16 +40,14 @@ class TouchingProgram {
     /// Makes a step of the program.
     const StepReport& step(int i) {
         const double dt = 0.8 * world_.stable_step();
-        move_probe(dt);
-        move_grasper(i, dt);
-        draw_suture(i);
-        move_wire(i, dt);
+        StepInputs inputs;
+        move_probe(dt, inputs);
+        move_grasper(i, dt, inputs);
+        draw_suture(i, inputs);
+        move_wire(i, dt, inputs);
         for (std::size_t k = 0; k < planes_.size(); ++k)
-            if (i == cut_at_[k]) {
-                world_.set_tool_pose(planes_[k], Pose());
-                world_.withdraw_tool(planes_[k]);
-            }
-        return world_.step(dt);
+            if (i == cut_at_[k]) inputs.move(planes_[k], Pose()).withdraw(planes_[k]);
+        return world_.step(dt, inputs);
     }
 
     World& world() { return world_; }
@@ -113,7 +111,7 @@ class TouchingProgram {
         world_.place_tool(probe_, probe_pose_);
     }
 
-    void move_probe(double dt) {
+    void move_probe(double dt, StepInputs& inputs) {
         probe_pose_.position += dt * probe_velocity_;
         // Back from the middle, so that what it can press stays small.
         if ((probe_pose_.position - box_.center()).norm() < 0.35 * box_.sizes().minCoeff() &&
@@ -121,7 +119,7 @@ class TouchingProgram {
             probe_velocity_ = -probe_velocity_;
             is_back_ = true;
         }
-        world_.set_tool_pose(probe_, probe_pose_);
+        inputs.move(probe_, probe_pose_);
     }
 
     void add_grasper() {
@@ -136,11 +134,11 @@ class TouchingProgram {
         open_at_ = close_at_ + 20 + static_cast<int>(random_.below(150));
     }
 
-    void move_grasper(int i, double dt) {
+    void move_grasper(int i, double dt, StepInputs& inputs) {
         if (i == close_at_) world_.close_tool(grasper_);
         if (i == open_at_) world_.open_tool(grasper_);
         grasper_pose_.position += dt * grasper_velocity_;
-        world_.set_tool_pose(grasper_, grasper_pose_);
+        inputs.move(grasper_, grasper_pose_);
     }
 
     void add_suture() {
@@ -153,13 +151,13 @@ class TouchingProgram {
         tie_at_ = static_cast<int>(random_.below(200));
     }
 
-    void draw_suture(int i) {
+    void draw_suture(int i, StepInputs& inputs) {
         if (i == tie_at_) {
             world_.tie_suture(suture_);
             drawn_by_ = random_.uniform(0.05, 0.3) * world_.suture_length(suture_) / 60.0;
         }
         if (i >= tie_at_ && i < tie_at_ + 60)
-            world_.set_suture_length(suture_, world_.suture_length(suture_) - drawn_by_);
+            inputs.draw(suture_, world_.suture_length(suture_) - drawn_by_);
     }
 
     /// A wire that cuts its way through a part of the body, with a force that it exerts or only
@@ -175,12 +173,12 @@ class TouchingProgram {
         wire_pose_.position = point_in_box(0.6) - 0.03 * wire_velocity_.normalized();
     }
 
-    void move_wire(int i, double dt) {
+    void move_wire(int i, double dt, StepInputs& inputs) {
         if (i == wire_at_) world_.place_tool(wire_, wire_pose_);
         if (i < wire_at_ || i > wire_at_ + 60) return;
         wire_pose_.position += dt * wire_velocity_;
-        world_.set_tool_pose(wire_, wire_pose_);
-        if (i == wire_at_ + 60) world_.withdraw_tool(wire_);
+        inputs.move(wire_, wire_pose_);
+        if (i == wire_at_ + 60) inputs.withdraw(wire_);
     }
 
     void add_plane() {

@@ -89,10 +89,11 @@ TEST(Undo, GoesBackWithContact) {
     std::size_t most_points = 0;
     const auto press = [&](int from, int to) {
         for (int i = from; i < to; ++i) {
-            if (i == 60) cut_along(world, {0.05, 0.05, 0.07}, {0.1, 0.05, 1.0});
-            if (i == 100) cut_along(world, {0.05, 0.05, 0.05}, {1.0, 0.05, 0.1});
-            world.set_tool_pose(ball, at({0.05 + 2e-5 * i, 0.05, size + 0.021 - 6e-5 * i}));
-            world.step(0.8 * world.stable_step());
+            StepInputs inputs;
+            if (i == 60) inputs = cut_along(world, {0.05, 0.05, 0.07}, {0.1, 0.05, 1.0});
+            if (i == 100) inputs = cut_along(world, {0.05, 0.05, 0.05}, {1.0, 0.05, 0.1});
+            inputs.move(ball, at({0.05 + 2e-5 * i, 0.05, size + 0.021 - 6e-5 * i}));
+            world.step(0.8 * world.stable_step(), inputs);
             most_points = std::max(most_points, world.report().contact.num_points);
         }
     };
@@ -117,8 +118,7 @@ TEST(Undo, RefusesMomentsThatAreNotItsOwn) {
     World world = held_world(), other = held_world();
     const UndoPoint start = world.undo_point();
     EXPECT_THAT(input_error_of([&] { other.undo(start); }), HasSubstr("another world"));
-    cut_along(world, {0.05, 0.05, 0.05}, {1, 0, 0.1});
-    world.step(0.5 * world.stable_step());
+    world.step(0.5 * world.stable_step(), cut_along(world, {0.05, 0.05, 0.05}, {1, 0, 0.1}));
     const UndoPoint later = world.undo_point();
     const ToolId knife = world.add_tool(scalpel());
     world.undo(start);
@@ -138,8 +138,7 @@ TEST(Undo, BringsAWorldBackThatHasFailed) {
     run_until(world, 0.02);
     const UndoPoint before = world.undo_point();
     const std::string bytes = world.save();
-    cut_along(world, {0.05, 0.05, 0.05}, {1, 0, 0.1});
-    world.step(0.5 * world.stable_step());
+    world.step(0.5 * world.stable_step(), cut_along(world, {0.05, 0.05, 0.05}, {1, 0, 0.1}));
     world.add_load(
         {.name = "blow",
          .kind = physics::NodalLoad{

@@ -24,15 +24,16 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
         {[&] { world.step(nan); }, "it must be above 0"},
         {[&] { world.step(1.01 * bound); }, "is above the stable step of"},
         {[&] { world.step_to(world.time()); }, "it must go forward"},
-        {[&] { world.set_tool_pose({7}, {}); }, "names no tool"},
-        {[&] { world.withdraw_tool({3}); }, "names no tool"},
+        {[&] { world.require_possible(StepInputs().move(ToolId{7}, {})); }, "names no tool"},
+        {[&] { world.require_possible(StepInputs().withdraw({3})); }, "names no tool"},
         {[&] { world.place_tool(world.tools()[0], {}); }, "withdraw it before it is put elsewhere"},
         {[&] {
-             world.set_tool_pose(world.tools()[0], at({nan, 0, 0}));
+             world.require_possible(StepInputs().move(world.tools()[0], at({nan, 0, 0})));
          },
          "its pose must have"},
         {[&] {
-             world.set_tool_pose(world.tools()[0], {Eigen::Quaterniond(2, 0, 0, 0), Vec3::Zero()});
+             world.require_possible(StepInputs().move(
+                 world.tools()[0], {Eigen::Quaterniond(2, 0, 0, 0), Vec3::Zero()}));
          },
          "its pose must have"},
         {[&] {
@@ -56,8 +57,10 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
          "is held in x by both 'floor' and 'more'"},
         {[&] { world.add_constraint({.name = "none"}); }, "it has no node"},
         {[&] { world.grasp("hand", {VertexId(99999)}, {}); }, "there is no node 99999"},
-        {[&] { world.set_grasp_pose(world.constraints()[0], {}); }, "is no grasp"},
-        {[&] { world.set_grasp_pose({9}, {}); }, "names no constraint"},
+        {[&] { world.require_possible(StepInputs().move(world.constraints()[0], {})); },
+         "is no grasp"},
+        {[&] { world.require_possible(StepInputs().move(ConstraintId{9}, {})); },
+         "names no constraint"},
         {[&] { world.release({9}); }, "names no constraint"},
         {[&] { world.remove_load({4}); }, "names no load"},
         {[&] {
@@ -98,6 +101,64 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
     EXPECT_TRUE(world.save() == undisturbed.world().save());
 }
 
+TEST(World, StepsThatAreRefusedLeaveNothingBehind) {
+    struct Room {
+        World world;
+        ToolId ball, knife;
+        ConstraintId hand;
+    };
+    const auto make_room = [] {
+        Room room{held_world(), {}, {}, {}};
+        World& world = room.world;
+        room.ball = world.add_tool({"ball", cutting::Probe{cutting::Sphere{0.01}}});
+        world.place_tool(room.ball, at({0.05, 0.05, size + 0.01}));
+        room.knife = world.add_tool(scalpel());
+        world.place_tool(room.knife, scalpel_pose(0.0));
+        room.hand = world.grasp(
+            "hand", nodes_where(world, [](const Vec3& x) { return x.z() == size && x.x() == 0.0; }),
+            Pose());
+        world.step(0.5 * world.stable_step());
+        return room;
+    };
+    auto [world, ball, knife, hand] = make_room();
+    World undisturbed = make_room().world;
+    const std::string before = world.save();
+    ASSERT_EQ(before, undisturbed.save());
+
+    const double dt = 0.5 * world.stable_step();
+    const StepInputs sound = StepInputs()
+                                 .move(ball, at({0.05, 0.05, size + 0.005}))
+                                 .move(knife, scalpel_pose(0.5))
+                                 .withdraw(knife)
+                                 .move(hand, at({0, 0, 0.001}));
+    EXPECT_NO_THROW(world.require_possible(sound));
+    const auto sound_and = [&](const auto& id, const Pose& pose) {
+        return StepInputs(sound).move(id, pose);
+    };
+    struct Refused {
+        const char* name;
+        double dt;
+        StepInputs inputs;
+    };
+    const std::vector<Refused> all = {
+        {"a step back", -1.0, sound},
+        {"too long a step", 100.0 * world.rest_stable_step(), sound},
+        {"a tool that does not exist", dt, sound_and(ToolId{99}, Pose())},
+        {"a pose that is not finite", dt, sound_and(ball, at({std::nan(""), 0, 0}))},
+        {"a constraint that is no grasp", dt, sound_and(world.constraints()[0], Pose())},
+        {"a probe that goes too far", dt, sound_and(ball, at({0.05, 0.05, 1000.0}))}};
+    for (const auto& [name, step, inputs] : all) {
+        SCOPED_TRACE(name);
+        EXPECT_THROW(world.step(step, inputs), InputError);
+        EXPECT_FALSE(world.has_failed());
+        EXPECT_EQ(world.save(), before);
+    }
+    // Nothing of them takes part in the next step.
+    world.step(dt);
+    undisturbed.step(dt);
+    EXPECT_EQ(world.save(), undisturbed.save());
+}
+
 TEST(World, RefusesIdsOfWhatItDoesNotHave) {
     World world(held_world()), other(held_world());
     const std::size_t num_constraints = world.constraints().size();
@@ -127,30 +188,34 @@ TEST(World, RefusesIdsOfWhatItDoesNotHave) {
 
     const ToolId plane_of_other = add_plane(other);
     const std::vector<std::pair<std::function<void()>, const char*>> misuses = {
-        {[&] { world.set_grasp_pose(removed, Pose()); }, "restored to a state without it"},
+        {[&] { world.require_possible(StepInputs().move(removed, Pose())); },
+         "restored to a state without it"},
         {[&] { world.release(removed); }, "restored to a state without it"},
-        {[&] { world.set_tool_pose(forgotten, Pose()); }, "restored to a state without it"},
+        {[&] { world.require_possible(StepInputs().move(forgotten, Pose())); },
+         "restored to a state without it"},
         {[&] { world.set_load_factor(forgotten_load, 2.0); }, "restored to a state without it"},
-        {[&] { world.withdraw_tool(plane_of_other); }, "of another world"},
+        {[&] { world.require_possible(StepInputs().withdraw(plane_of_other)); },
+         "of another world"},
         {[&] { other.release(hand); }, "of another world"},
-        {[&] { world.set_tool_pose(ToolId(), Pose()); }, "names no tool"}};
+        {[&] { world.require_possible(StepInputs().move(ToolId(), Pose())); }, "names no tool"}};
     for (const auto& [misuse, why] : misuses) {
         const std::string message = input_error_of(misuse);
         EXPECT_NE(message.find(why), std::string::npos) << message << " for " << why;
     }
     // What is there is still named by the same ids, also in a world that was moved.
     World moved = std::move(world);
-    moved.set_grasp_pose(hand, Pose());
-    moved.set_tool_pose(plane, Pose());
+    moved.require_possible(StepInputs().move(hand, Pose()).move(plane, Pose()));
     EXPECT_EQ(moved.find_tool("plane"), plane);
     moved.release(hand);
     EXPECT_EQ(moved.constraints().size(), num_constraints);
     // Ids of a saved world name the same in another one that is restored to its state, but no more.
     other.restore(saved);
-    other.set_grasp_pose(hand, Pose());
+    other.require_possible(StepInputs().move(hand, Pose()));
     const ToolId only_there = add_plane(moved);
     add_plane(other);
-    EXPECT_NE(input_error_of([&] { other.withdraw_tool(only_there); }).find("of another world"),
+    EXPECT_NE(input_error_of([&] {
+                  other.require_possible(StepInputs().withdraw(only_there));
+              }).find("of another world"),
               std::string::npos);
 }
 

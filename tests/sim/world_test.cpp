@@ -75,14 +75,14 @@ path = [{ time = 0, at = [-0.01, 0, 0] },
         std::size_t num_edits = 0;
         while (!run.is_finished()) {
             run.step();
+            StepInputs inputs;
             if (world.is_tool_present(tool))
-                world.set_tool_pose(tool,
-                                    interpolate(start, end, std::min(1.0, run.time() / 0.05)));
+                inputs.move(tool, interpolate(start, end, std::min(1.0, run.time() / 0.05)));
             if (run.time() >= 0.05 && world.is_tool_present(tool)) {
                 const Pose before = interpolate(start, end, 0.999);
-                world.withdraw_tool(tool, &before);
+                inputs.withdraw(tool, &before);
             }
-            num_edits += world.step_to(run.time()).edits.size();
+            num_edits += world.step_to(run.time(), inputs).edits.size();
         }
         EXPECT_EQ(num_edits, run.edits().size());
         EXPECT_GE(num_edits, 3u);
@@ -157,6 +157,7 @@ TEST(World, ResumesFromSavedBytesToTheBit) {
 
 TEST(World, ResumesStaticsFromSavedBytesToTheBit) {
     const auto step = [](World& world, int i) {
+        StepInputs inputs;
         if (i == 1)
             world.add_load({.name = "push",
                             .kind = physics::NodalLoad{
@@ -166,10 +167,9 @@ TEST(World, ResumesStaticsFromSavedBytesToTheBit) {
         if (i == 3) {
             const ToolId burr = world.add_tool({"burr", cutting::Carver{cutting::Sphere{0.02}}});
             world.place_tool(burr, at({0.5 * size, 0.5 * size, 2 * size}));
-            world.set_tool_pose(burr, at({0.5 * size, 0.5 * size, 0.03}));
-            world.withdraw_tool(burr);
+            inputs.move(burr, at({0.5 * size, 0.5 * size, 0.03})).withdraw(burr);
         }
-        world.step(0.1);
+        world.step(0.1, inputs);
     };
     World whole = held_world(Solver::statics);
     std::vector<std::string> moments;
@@ -246,8 +246,8 @@ TEST(World, GraspHoldsDeformedTissueAndCarriesIt) {
                    start.position + Vec3(0, 0, 0.01)};
     constexpr int num_steps = 50;
     for (int i = 1; i <= num_steps; ++i) {
-        world.set_grasp_pose(hand, interpolate(start, end, double(i) / num_steps));
-        world.step(0.5 * world.stable_step());
+        const Pose pose = interpolate(start, end, double(i) / num_steps);
+        world.step(0.5 * world.stable_step(), StepInputs().move(hand, pose));
     }
     for (std::size_t i = 0; i < top.size(); ++i) {
         const Vec3 there = end.to_world(start.to_tool(before[i]));
@@ -265,17 +265,13 @@ TEST(World, GraspHoldsTissueBesideAClamp) {
     World world = held_world();
     const ToolId plane =
         world.add_tool({"plane", cutting::PlaneCut{{0.05, 0.05, 0.012}, {0.02, 0.01, 1}}});
-    world.set_tool_pose(plane, Pose());
-    world.withdraw_tool(plane);
-    world.step(0.5 * world.stable_step());
+    world.step(0.5 * world.stable_step(), StepInputs().move(plane, Pose()).withdraw(plane));
     const auto grasped =
         nodes_where(world, [](const Vec3& x) { return x.z() > 0.005 && x.z() < 0.02; });
     ASSERT_FALSE(grasped.empty());
     const ConstraintId hand = world.grasp("hand", grasped, Pose());
-    for (int i = 0; i < 5; ++i) {
-        world.set_grasp_pose(hand, at({0, 0, 1e-4 * i}));
-        world.step(0.5 * world.stable_step());
-    }
+    for (int i = 0; i < 5; ++i)
+        world.step(0.5 * world.stable_step(), StepInputs().move(hand, at({0, 0, 1e-4 * i})));
     const auto positions = world.positions();
     for (const VertexId n : nodes_where(world, [](const Vec3& x) { return x.z() == 0.0; }))
         EXPECT_EQ(positions[n.index()], world.mesh().rest_position(n));
@@ -396,11 +392,12 @@ TEST(World, RefusesForceTermsThatCannotBe) {
     EXPECT_TRUE(world.save() == undisturbed.world().save());
 }
 
-TEST(World, PlacesAToolThatWasToBeWithdrawn) {
+TEST(World, PlacesAToolThatWasWithdrawn) {
     World world = held_world();
     const ToolId tool = world.add_tool(scalpel());
     world.place_tool(tool, at({-0.05, 0, 0}));
-    world.withdraw_tool(tool);
+    world.step(0.5 * world.stable_step(), StepInputs().withdraw(tool));
+    EXPECT_FALSE(world.is_tool_present(tool));
     world.place_tool(tool, at({-0.04, 0, 0}));
     world.step(0.5 * world.stable_step());
     EXPECT_TRUE(world.is_tool_present(tool));
@@ -456,9 +453,8 @@ TEST(World, ReportsWhatAToolCannotDivide) {
     World world(std::move(def));
     const ToolId tool_id = world.add_tool(scalpel());
     world.place_tool(tool_id, scalpel_pose(0.0));
-    world.set_tool_pose(tool_id, scalpel_pose(0.5));
     try {
-        world.step(0.5 * world.stable_step());
+        world.step(0.5 * world.stable_step(), StepInputs().move(tool_id, scalpel_pose(0.5)));
         FAIL() << "it has been divided";
     } catch (const ToolError& error) {
         EXPECT_EQ(error.tool, tool_id);
