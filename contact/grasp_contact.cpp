@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -67,27 +68,27 @@ Vec3 GraspContact::position_of(const Held& held, std::span<const Vec3> positions
     return x;
 }
 
-void GraspContact::close(const physics::Model& model, std::span<const Triangle> surface,
+void GraspContact::close(const physics::Model& model, const TissueSurface& surface,
                          const Pose& pose) {
     const std::span<const Vec3> positions = model.mesh_positions();
     held_.clear();
-    std::vector<VertexId> nodes;
-    for (const Triangle& triangle : surface)
-        for (const VertexId n : triangle) {
+    std::map<VertexId, int> nodes;  // with their regions
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+        for (const VertexId n : surface.triangles[t]) {
             const Vec3 x = pose.to_tool(positions[n.index()]);
-            if (cutting::meets(grasper_.jaws, x, x)) nodes.push_back(n);
+            if (cutting::meets(grasper_.jaws, x, x))
+                nodes.emplace(n, model.mesh().region(surface.faces[t].cell));
         }
-    std::ranges::sort(nodes);
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    for (const VertexId n : nodes)
-        held_.push_back({{n, n, n}, Vec3::UnitX(), pose.to_tool(positions[n.index()])});
+    for (const auto& [n, region] : nodes)
+        held_.push_back({{n, n, n}, Vec3::UnitX(), pose.to_tool(positions[n.index()]), region});
     if (!held_.empty()) return;
     // Jaws between nodes hold a point of each triangle that they meet.
     const auto* box = std::get_if<cutting::Cuboid>(&grasper_.jaws);
     const cutting::ProbeShape shape =
         std::visit([](const auto& one) { return cutting::ProbeShape(one); }, grasper_.jaws);
     std::vector<RigidTouch> touches;
-    for (const Triangle& triangle : surface) {
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const Triangle& triangle = surface.triangles[t];
         std::array<Vec3, 3> corners;
         for (std::size_t k = 0; k < 3; ++k)
             corners[k] = pose.to_tool(positions[triangle[k].index()]);
@@ -102,7 +103,9 @@ void GraspContact::close(const physics::Model& model, std::span<const Triangle> 
                 return (held.place - touch.point).norm() < 1e-9 * size_ &&
                        std::ranges::find_first_of(held.nodes, triangle) != held.nodes.end();
             });
-            if (!is_known) held_.push_back({triangle, touch.weights, touch.point});
+            if (!is_known)
+                held_.push_back({triangle, touch.weights, touch.point,
+                                 model.mesh().region(surface.faces[t].cell)});
         }
     }
 }
@@ -136,6 +139,7 @@ void GraspContact::add_points(const physics::Model& model, const TissueSurface& 
 
 ToolImpulse GraspContact::take_impulses(const ContactSolver& solver, double dt) {
     ToolImpulse sum;
+    points_.clear();
     for (std::size_t i = 0; i < held_.size(); ++i) {
         Held& held = held_[i];
         const ContactPoint& point = solver.point(first_point_ + i);
@@ -143,6 +147,9 @@ ToolImpulse GraspContact::take_impulses(const ContactSolver& solver, double dt) 
         sum.force += held.impulse;
         sum.torque += (before_.to_world(held.place) - before_.position).cross(held.impulse);
         sum.work += held.impulse.dot(point.velocity);
+        if (!held.impulse.isZero(0.0))
+            points_.push_back({before_.to_world(held.place), Vec3::Zero(), 0.0, Vec3::Zero(),
+                               -held.impulse / dt, held.region});
         // A point that slips is held where it has come to.
         if (held.impulse.norm() >= slips_at * point.largest_force * dt)
             held.place = before_.to_tool(before_.to_world(held.place) + point.offset);

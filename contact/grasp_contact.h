@@ -36,8 +36,11 @@ class GraspContact final : public ToolContact {
     /// Takes hold of the nodes of a surface that are in the jaws; without any, of the points of its
     /// triangles that are deepest in them, or in the middle of what is in a box. Cost: O(n) in the
     /// triangles.
-    void close(const physics::Model& model, std::span<const Triangle> surface, const Pose& pose);
-    void open() { held_.clear(); }
+    void close(const physics::Model& model, const TissueSurface& surface, const Pose& pose);
+    void open() {
+        held_.clear();
+        points_.clear();
+    }
     std::size_t num_held() const { return held_.size(); }
     /// Lets go what an edit has removed.
     void follow(const physics::Model& model) override;
@@ -56,9 +59,10 @@ class GraspContact final : public ToolContact {
         std::array<VertexId, 3> nodes;  ///< of the mesh
         Vec3 weights;                   ///< of them; a node has the weight 1
         Vec3 place;                     ///< in the frame of the jaws, m
+        int region;                     ///< of the tissue
         Vec3 impulse = Vec3::Zero();    ///< of the last step, N s
         static void archive(auto& ar, auto& self) {
-            ar(self.nodes, self.weights, self.place, self.impulse);
+            ar(self.nodes, self.weights, self.place, self.region, self.impulse);
         }
     };
     static void list(auto& ar, auto& self) { ar(self.held_); }

@@ -82,6 +82,7 @@ void RigidContact::add_points(const physics::Model& model, const TissueSurface& 
     first_point_ = solver.size();
     places_.clear();
     features_.clear();
+    regions_.clear();
     std::map<Feature, std::pair<RigidTouch, std::uint32_t>> touches;
     for (const std::uint32_t t : triangles_) {
         const Triangle& triangle = surface.triangles[t];
@@ -111,6 +112,7 @@ void RigidContact::add_points(const physics::Model& model, const TissueSurface& 
         point.impulse = last_impulse_at(feature);
         places_.push_back(here);
         features_.push_back(feature);
+        regions_.push_back(model.mesh().region(surface.faces[t].cell));
         solver.begin(point);
         const auto& [a, b, c] = surface.triangles[t];
         const Vec3& weights = touch.weights;
@@ -126,8 +128,9 @@ Vec3 RigidContact::last_impulse_at(const Feature& feature) const {
     return last_impulses_[static_cast<std::size_t>(it - last_features_.begin())];
 }
 
-ToolImpulse RigidContact::take_impulses(const ContactSolver& solver, double /*dt*/) {
+ToolImpulse RigidContact::take_impulses(const ContactSolver& solver, double dt) {
     ToolImpulse sum;
+    points_.clear();
     last_features_.clear();
     last_impulses_.clear();
     for (std::size_t i = 0; i < places_.size(); ++i) {
@@ -137,7 +140,11 @@ ToolImpulse RigidContact::take_impulses(const ContactSolver& solver, double /*dt
         last_impulses_.push_back(impulse);
         sum.force += impulse;
         sum.torque += (places_[i] - before_.position).cross(impulse);
-        sum.work += impulse.dot(solver.point(first_point_ + i).velocity);
+        const ContactPoint& point = solver.point(first_point_ + i);
+        sum.work += impulse.dot(point.velocity);
+        const Vec3 force = -impulse / dt, along = force.dot(point.normal) * point.normal;
+        points_.push_back(
+            {places_[i], -point.normal, -point.gap, along, force - along, regions_[i]});
     }
     return sum;
 }

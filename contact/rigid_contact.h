@@ -78,6 +78,7 @@ class RigidContact final : public ToolContact {
     std::size_t first_point_ = 0;         // in the solver
     std::vector<Vec3> places_;            // of the points from there on, m
     std::vector<Feature> features_;       // of the same, in ascending order
+    std::vector<int> regions_;            // of the same
     std::vector<Feature> last_features_;  // of the step before, with its impulses, N s
     std::vector<Vec3> last_impulses_;
     std::vector<RigidTouch> found_;  // scratch

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "incise/base/archive.h"
 #include "incise/contact/contact_solver.h"
@@ -11,6 +13,16 @@
 #include "incise/physics/body/model.h"
 
 namespace incise::contact {
+
+/// A point at which tissue exerts a force on a tool, in the last part of a step.
+struct ToolContactPoint {
+    Vec3 point;           ///< on the tool, at the beginning of the part, m
+    Vec3 normal;          ///< of unit length, from the tissue to the tool; zero in jaws
+    double depth;         ///< by which both overlap there, m; below 0: they meet in the part
+    Vec3 normal_force;    ///< on the tool along the normal, N
+    Vec3 friction_force;  ///< on the tool, N: the rest; in jaws all of it
+    int region;           ///< of the tissue
+};
 
 /// The contact of a tool that is there with the tissue. Each kind of contact adds its points to the
 /// solver of a step, and takes their impulses after it.
@@ -36,6 +48,10 @@ class ToolContact {
     /// Writes what the next step begins with. Each kind has a restore() of its own.
     virtual void save(ArchiveWriter& ar) const = 0;
 
+    /// Returns the points with a force in the last part of a step. Threads and blades, whose force
+    /// is not at points, have none. A restore() leaves none.
+    std::span<const ToolContactPoint> points() const { return points_; }
+
     /// Counts what the tool has exerted in a step.
     void add(const ToolImpulse& done) { sum_ += done; }
     /// Returns what the tool has exerted since the last call.
@@ -45,6 +61,8 @@ class ToolContact {
     ToolContact() = default;
     ToolContact(const ToolContact&) = default;
     ToolContact& operator=(const ToolContact&) = default;
+
+    std::vector<ToolContactPoint> points_;
 
   private:
     ToolImpulse sum_;

@@ -36,7 +36,8 @@ struct Handle {
     bool is_busy = false;         ///< a thread uses the driver without the GIL
     std::size_t num_exports = 0;  ///< open views, and arrays that show memory of the world
     int num_threads = 1;
-    std::size_t num_warned = 0;  ///< of the warnings of the driver
+    std::size_t num_warned = 0;             ///< of the warnings of the driver
+    std::shared_ptr<UndoPoint> last_point;  ///< that undo_point() has returned
 
     /// The living nodes, in ascending order: row r of the arrays of Python is node nodes[r].
     struct Rows {

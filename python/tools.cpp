@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "incise/base/error.h"
+#include "incise/contact/tool_contact.h"
+#include "incise/python/values.h"
+#include "incise/scenario/tools/tool_kind.h"
 
 namespace incise::python {
 
@@ -42,6 +45,67 @@ WorldDriver& driver_of(const Constraint& constraint) {
 const physics::Reaction& reaction_of(const Constraint& constraint) {
     const WorldDriver& driver = driver_of(constraint);
     return driver.world().reaction(driver.constraint(constraint.name));
+}
+
+/// The points at which tissue exerts forces on a tool, as arrays.
+struct ToolContacts {
+    py::array_t<double> points, normals, depths, normal_forces, friction_forces;
+    py::array_t<std::int64_t> regions;
+};
+
+ToolContacts contacts_of(const Tool& tool) {
+    const auto points = driver_of(tool).world().tool_contacts(tool.id);
+    const auto vectors = [&](Vec3 contact::ToolContactPoint::*member) {
+        std::vector<Vec3> values;
+        for (const contact::ToolContactPoint& point : points) values.push_back(point.*member);
+        return matrix_of(values);
+    };
+    const auto n = static_cast<py::ssize_t>(points.size());
+    ToolContacts contacts{vectors(&contact::ToolContactPoint::point),
+                          vectors(&contact::ToolContactPoint::normal),
+                          py::array_t<double>(n),
+                          vectors(&contact::ToolContactPoint::normal_force),
+                          vectors(&contact::ToolContactPoint::friction_force),
+                          py::array_t<std::int64_t>(n)};
+    std::ranges::transform(points, contacts.depths.mutable_data(),
+                           &contact::ToolContactPoint::depth);
+    std::ranges::transform(points, contacts.regions.mutable_data(),
+                           &contact::ToolContactPoint::region);
+    return contacts;
+}
+
+void register_tool_contacts(py::module_& module) {
+    py::class_<ToolContacts, std::shared_ptr<ToolContacts>> type(
+        module, "ToolContacts",
+        R"(The points at which tissue exerts forces on a tool: see Tool.contacts.
+
+All arrays have a row for each of the N points, and are copies. Lengths are m, forces N, in the
+frame of the world.)");
+    type.attr("__module__") = "incise";
+    forbid_copies(type, "keep its arrays");
+    type.def_property_readonly("points", held(&ToolContacts::points),
+                               "The points on the tool, shape (N, 3).")
+        .def_property_readonly("normals", held(&ToolContacts::normals),
+                               "From the tissue to the tool, of length one, shape (N, 3). Zero in "
+                               "jaws.")
+        .def_property_readonly("depths", held(&ToolContacts::depths),
+                               "By how much tool and tissue overlap there, shape (N,). Below 0: "
+                               "they met in the\nlast part of the step. 0 in jaws.")
+        .def_property_readonly("normal_forces", held(&ToolContacts::normal_forces),
+                               "The forces on the tool along the normals, shape (N, 3).")
+        .def_property_readonly("friction_forces", held(&ToolContacts::friction_forces),
+                               "The other forces on the tool, shape (N, 3). In jaws these are all.")
+        .def_property_readonly("regions", held(&ToolContacts::regions),
+                               "The region of the tissue, int64, shape (N,).")
+        .def("__len__", held(+[](const ToolContacts& contacts) {
+                 return static_cast<std::size_t>(contacts.regions.size());
+             }),
+             "Return the number of points.")
+        .def("__repr__", held(+[](const ToolContacts& contacts) {
+                 return "<incise.ToolContacts: " + std::to_string(contacts.regions.size()) +
+                        " points>";
+             }),
+             "Return the number of points as text.");
 }
 
 void register_tool(py::module_& module) {
@@ -98,6 +162,23 @@ toughness. For a suture it is the force on its thread at its first point; its le
                 return array_of(driver_of(tool).tool_forces().of(tool.id).torque);
             }),
             "The same for the torque about the origin of the tool, N m. Shape (3,), a copy.")
+        .def_property_readonly("contacts",
+                               held(+[](const Tool& tool) { return contacts_of(tool); }),
+                               R"(Where tissue touches a probe or a grasper, a ToolContacts, anew.
+
+It has the points with a force in the last step; in a step of several parts those in the last part.
+In a step of one part their forces add up to the force of a call of that step. Other tools have
+none, and none has any after restore() or undo().)")
+        .def_property_readonly(
+            "definition", held(+[](const Tool& tool) -> py::object {
+                const auto& shape = driver_of(tool).world().tool(tool.id).shape;
+                const auto definition = scenario::definition_of(shape);
+                return definition ? object_from(*definition) : py::none();
+            }),
+            R"(How the tool looks: a new dict with the keys kind, and edge or shape, of [[tool]].
+
+A shape from a file comes as {"mesh": {"points", "triangles"}}, a half space as {"plane": {"point",
+"normal"}}. None for tools that have no body: cuts at once, and sutures.)")
         .def_property_readonly(
             "is_in_tissue",
             held(+[](const Tool& tool) { return driver_of(tool).is_in_tissue(tool.id); }),
@@ -182,6 +263,15 @@ A grasp on moving tissue stops it within one step: leave out that step, or take 
 
 The nodes go with the frame. None for a constraint that is no grasp; setting it then raises
 InputError.)")
+        .def("change", held(+[](const Constraint& constraint, const py::dict& definition) {
+                 const scenario::Value value = value_from(definition, "");
+                 driver_of(constraint).set_constraint(constraint.name, value);
+                 pass_warnings(constraint.world);
+             }),
+             py::arg("definition"),
+             R"(Put another constraint in the place of this one, from the next step on.
+
+definition: as of World.add_constraint(). Raises InputError for a grasp, and as that does.)")
         .def("release", held(+[](const Constraint& constraint) {
                  driver_of(constraint).release(constraint.name);
              }),
@@ -194,7 +284,7 @@ InputError.)")
 
 void register_load(py::module_& module) {
     py::class_<Load, std::shared_ptr<Load>> type(module, "Load",
-                                                 "A load of the scenario: see World.loads.");
+                                                 "A load: see World.loads and World.add_load().");
     type.attr("__module__") = "incise";
     forbid_copies(type, "keep its name");
     type.def_property_readonly("name", held(&Load::name), "The name of the load.")
@@ -207,6 +297,17 @@ void register_load(py::module_& module) {
             "By what the load is multiplied, now. Setting it replaces the curve of the scenario "
             "from\n"
             "now on. Raises InputError for a number that is not finite.")
+        .def("change", held(+[](const Load& load, const py::dict& definition) {
+                 const scenario::Value value = value_from(definition, "");
+                 driver_of(load.world).set_load(load.name, value);
+                 pass_warnings(load.world);
+             }),
+             py::arg("definition"),
+             "Put another load in the place of this one, from the next step on. definition: as of\n"
+             "World.add_load(), which says what is raised.")
+        .def("remove",
+             held(+[](const Load& load) { driver_of(load.world).remove_load(load.name); }),
+             "Remove the load, from the next step on.")
         .def("__repr__",
              held(+[](const Load& load) { return "<incise.Load '" + load.name + "'>"; }),
              "Return the name as text.");
@@ -215,6 +316,7 @@ void register_load(py::module_& module) {
 }  // namespace
 
 void register_tools(py::module_& module) {
+    register_tool_contacts(module);
     register_tool(module);
     register_constraint(module);
     register_load(module);

@@ -68,4 +68,21 @@ scenario::Value value_from(const py::handle& object, const std::string& name) {
     return convert(object, name, 0);
 }
 
+py::object object_from(const scenario::Value& value) {
+    if (const auto* flag = value.get<bool>()) return py::bool_(*flag);
+    if (const auto* integer = value.get<std::int64_t>()) return py::int_(*integer);
+    if (const auto* number = value.get<double>()) return py::float_(*number);
+    if (const auto* text = value.get<std::string>()) return py::str(*text);
+    if (const auto* array = value.get<scenario::Array>()) {
+        py::list list;
+        for (const scenario::Value& item : *array) list.append(object_from(item));
+        return list;
+    }
+    py::dict dict;
+    if (const auto* table = value.get<scenario::Table>())
+        for (const scenario::Entry& entry : *table)
+            dict[py::str(entry.key)] = object_from(entry.value);
+    return dict;
+}
+
 }  // namespace incise::python

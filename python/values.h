@@ -16,4 +16,7 @@ namespace incise::python {
 /// no scenario has.
 scenario::Value value_from(const pybind11::handle& object, const std::string& name);
 
+/// Returns a value of a scenario as a new object of Python.
+pybind11::object object_from(const scenario::Value& value);
+
 }  // namespace incise::python

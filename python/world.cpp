@@ -93,6 +93,27 @@ Constraint grasp(const World& world, const std::string& name, const py::object& 
     return {world, name};
 }
 
+Constraint add_constraint(const World& world, const std::string& name, const py::dict& definition) {
+    const scenario::Value value = value_from(definition, "");
+    driver_of(world).add_constraint(name, value);
+    pass_warnings(world);
+    return {world, name};
+}
+
+Load add_load(const World& world, const std::string& name, const py::dict& definition) {
+    const scenario::Value value = value_from(definition, "");
+    driver_of(world).add_load(name, value);
+    pass_warnings(world);
+    return {world, name};
+}
+
+void set_material(const World& world, const py::dict& definition) {
+    require_no_views(world);
+    const scenario::Value value = value_from(definition, "");
+    without_gil(world, [&](WorldDriver& driver) { driver.set_material(value); });
+    pass_warnings(world);
+}
+
 }  // namespace
 
 namespace {
@@ -344,6 +365,67 @@ True)")
 nodes: rows of positions.  pose: the frame that they go with; None: at their centre.
 Set the pose of the grasp to move them, and release() it. Nodes that cuts make between held nodes
 are held too. Raises InputError if another constraint holds a node otherwise.)")
+        .def("add_constraint", &add_constraint, py::arg("name"), py::arg("definition"),
+             R"(Add a constraint to the world from the next step on, and return it as a Constraint.
+
+name: letters, digits, _ and -; no other constraint of the world has it.
+definition: a dict with the keys of [[constraint]] but name: where, fix, move, rotate, about. Nodes
+    are chosen where they rest, and move from there; times are those of the world. For nodes that
+    are elsewhere than it says an InciseWarning tells how far they jump: use grasp() to hold nodes
+    where they are.
+Raises InputError with all faults of the definition, and if another constraint prescribes another
+motion of a node. Constraint.change() and release() change and remove it.
+
+>>> world = incise.World(mesh={"box": {"size": [0.1, 0.02, 0.02], "cells": [5, 1, 1]}},
+...                      materials=[{"density": 1000, "young": 1e5, "poisson": 0.4}])
+>>> wall = world.add_constraint("wall", {"fix": "xyz", "where": {
+...     "box": {"min": [0, 0, 0], "max": [0, 1, 1]}}})
+>>> world.set_gravity([0, 0, -9.81])
+>>> _ = world.run_until(0.01)
+>>> bool(wall.force[2] > 0)
+True)")
+        .def("add_load", &add_load, py::arg("name"), py::arg("definition"),
+             R"(Add a load to the world from the next step on, and return it as a Load.
+
+name: letters, digits, _ and -; no other load of the world has it.
+definition: a dict with the keys of [[load]] but name: where; one of nodal_force, traction, pressure
+    and body_force; factor, with times of the world.
+Raises InputError with all faults of the definition. Load.factor, change() and remove() go on from
+there.)")
+        .def("set_material", &set_material, py::arg("definition"),
+             R"(Give regions another material from the next step on, such as tissue that is heated.
+
+definition: a dict with the keys of [[material]] but fibre_array. `regions` says which; without it
+    all have the new material. The density must stay what it is.
+The body keeps its shape, its motion and its masses. The jump of its elastic energy counts as
+external work. Viscous stress stays if the series of `prony` has as many terms as before.
+undo() brings the former materials back; restore() needs bytes of a world with the same ones.
+Raises InputError, and changes nothing, for what is wrong with the definition or does not suit the
+elements.)")
+        .def(
+            "set_gravity",
+            [](const World& world, const py::object& gravity) {
+                const Vec3 vector = vector_from(gravity, "gravity");
+                driver_of(world).world().set_gravity(vector);
+            },
+            py::arg("gravity"), "Set the gravity from the next step on: three numbers, m/s2.")
+        .def(
+            "set_damping",
+            [](const World& world, double damping) {
+                driver_of(world).world().set_damping(damping);
+            },
+            py::arg("damping"),
+            "Set the mass-proportional damping from the next step on, 1/s, 0 or more.")
+        .def_property_readonly(
+            "gravity",
+            [](const World& world) {
+                return array_of(driver_of(world).world().model().loads().gravity());
+            },
+            "The gravity, m/s2. Shape (3,), a copy. See set_gravity().")
+        .def_property_readonly(
+            "damping",
+            [](const World& world) { return driver_of(world).world().model().damping(); },
+            "The mass-proportional damping, 1/s. See set_damping().")
         .def_property_readonly(
             "constraints",
             [](const World& world) {
@@ -398,28 +480,33 @@ tools; its mesh may be another. Raises InputError, and changes nothing, for othe
         .def(
             "undo_point",
             [](const World& world) {
-                return without_gil(world, [](WorldDriver& driver) {
+                world->last_point = without_gil(world, [](WorldDriver& driver) {
                     return std::make_shared<UndoPoint>(driver.undo_point());
                 });
+                return world->last_point;
             },
             R"(Return the present moment, an UndoPoint, to which undo() can go back.
 
-It costs a few steps at most, and less than save(). The world keeps the edits since then, until all
-points from before them are gone.)")
+The world keeps the last one, for undo() without a point. It costs a few steps at most, and less
+than save(). The world keeps the edits since then, until all points from before them are gone.)")
         .def(
             "undo",
             [](const World& world, const std::shared_ptr<UndoPoint>& point) {
                 require_no_views(world);
-                without_gil(world, [&](WorldDriver& driver) { driver.undo(*point); });
+                const std::shared_ptr<UndoPoint> to = point ? point : world->last_point;
+                if (!to)
+                    throw InputError(
+                        "the world has no moment to go back to: call undo_point() before the cut");
+                without_gil(world, [&](WorldDriver& driver) { driver.undo(*to); });
             },
-            py::arg("point").none(false),
+            py::arg("point") = py::none(),
             R"(Go back to a moment of this world: take back all cuts since then, and give body, tools,
 constraints, loads and time what they had.
 
-point: from undo_point(). save() then returns the bytes of that moment, and later steps give the
-same bits. It costs some steps, and for each element that was cut since then about 0.05 ms: little
-after a short stroke, more than restore() after a cut through a whole organ. It also brings a world
-back that has failed. The same point can be used again.
+point: from undo_point(); None: the last one. save() then returns the bytes of that moment, and
+later steps give the same bits. It costs some steps, and for each element that was cut since then
+about 0.0125 ms: little after a short stroke. It also brings a world back that has failed. The same
+point can be used again.
 
 Raises InputError, and changes nothing, for a point of another world, for one after an edit that was
 taken back, and for one from before restore().
@@ -436,6 +523,36 @@ taken back, and for one from before restore().
 >>> world.undo(before)
 >>> world.edits(), world.tools
 ([], {})
+)")
+        .def(
+            "render",
+            [](const py::object& world, int width, int height, const py::object& view,
+               const py::object& channels) {
+                return py::module_::import("incise._picture")
+                    .attr("render")(world, width, height, view, channels);
+            },
+            py::arg("width") = 640, py::arg("height") = 480,
+            py::arg("view") = py::make_tuple(-0.5, -1.0, 0.5), py::arg("channels") = "rgb",
+            R"(Return a picture of the body and of the tools that are there, without a display.
+
+width, height: pixels.
+view: the direction from the body to the camera, three numbers: the whole body is in the picture,
+    with z upwards. Or a dict with "position" and, if wanted, "target", m, and "field_of_view",
+    vertical, rad.
+channels: a name, or several of them; one gives an array, several a dict of arrays by name:
+    "rgb": uint8, shape (height, width, 3); faces of cuts are red.
+    "depth": distance from the camera along its axis, m, float64, (height, width); inf where there
+        is nothing.
+    "segmentation": int64, (height, width): the region of the tissue; -1 where there is nothing;
+        -2 for the first of World.tools, -3 for the second, ...
+
+Half spaces, sutures and cuts at once are not drawn. Raises ValueError for what cannot be.
+
+>>> world = incise.World(mesh={"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}},
+...                      materials=[{"density": 1000, "young": 1e5, "poisson": 0.4}])
+>>> picture = world.render(320, 240, channels=("rgb", "segmentation"))
+>>> picture["rgb"].shape, picture["segmentation"].min(), picture["segmentation"].max()
+((240, 320, 3), -1, 0)
 )")
         .def("write_vtu", &write_vtu, py::arg("path"),
              "Write the present state to a file for ParaView, as a frame of `incise run`.\n"

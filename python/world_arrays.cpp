@@ -24,7 +24,7 @@ py::object kept(const World& world, Handle::Kept& kept, Make make_anew) {
 }
 
 struct Surface {
-    py::array_t<std::int64_t> vertices, triangles;
+    py::array_t<std::int64_t> vertices, triangles, regions;
     py::array_t<bool> is_cut;
     std::uint64_t version;
 };
@@ -159,6 +159,7 @@ py::object surface(const World& world) {
         const auto size = static_cast<py::ssize_t>(boundary.triangles().size());
         Surface made{{},
                      py::array_t<std::int64_t>({size, py::ssize_t{3}}),
+                     py::array_t<std::int64_t>(size),
                      py::array_t<bool>(size),
                      world->driver.topology_version()};
         std::vector<bool> is_on(body.mesh().num_nodes(), false);
@@ -168,8 +169,11 @@ py::object surface(const World& world) {
                 *out = rows.row(n);
                 is_on[static_cast<std::size_t>(*out++)] = true;
             }
-        for (py::ssize_t t = 0; t < size; ++t)
-            made.is_cut.mutable_at(t) = boundary.is_cut()[static_cast<std::size_t>(t)] != 0;
+        for (py::ssize_t t = 0; t < size; ++t) {
+            const auto triangle = static_cast<std::size_t>(t);
+            made.is_cut.mutable_at(t) = boundary.is_cut()[triangle] != 0;
+            made.regions.mutable_at(t) = body.mesh().region(boundary.faces()[triangle].cell);
+        }
         std::vector<std::int64_t> vertices;
         for (std::size_t i = 0; i < is_on.size(); ++i)
             if (is_on[i]) vertices.push_back(static_cast<std::int64_t>(i));
@@ -178,6 +182,7 @@ py::object surface(const World& world) {
         frozen(made.vertices);
         frozen(made.triangles);
         frozen(made.is_cut);
+        frozen(made.regions);
         return py::cast(std::move(made));
     });
 }
@@ -266,6 +271,8 @@ The arrays are read-only copies: they are valid for ever, and belong to one topo
         .def_property_readonly(
             "is_cut", held(&Surface::is_cut),
             "True for the triangles of cuts, which lay inside at first. Shape (T,).")
+        .def_property_readonly("regions", held(&Surface::regions),
+                               "The region of the element of each triangle, int64. Shape (T,).")
         .def_property_readonly("version", held(&Surface::version),
                                "The topology_version that the arrays are for.");
 }

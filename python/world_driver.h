@@ -113,6 +113,16 @@ class WorldDriver {
     /// True if the tool divides elements and its cut ended in one in the last step.
     bool is_in_tissue(sim::ToolId tool) const;
 
+    // What a program gives to the body and takes from it, by definitions with the keys of their
+    // sections. These throw InputError for a wrong definition, and for a name that is taken or not
+    // known.
+    void add_constraint(const std::string& name, const scenario::Value& definition);
+    void set_constraint(const std::string& name, const scenario::Value& definition);
+    void add_load(const std::string& name, const scenario::Value& definition);
+    void set_load(const std::string& name, const scenario::Value& definition);
+    void remove_load(const std::string& name);
+    void set_material(const scenario::Value& definition);
+
     /// Returns the constraint with this name; throws InputError if there is none.
     sim::ConstraintId constraint(const std::string& name) const;
     /// Grasps nodes at their present positions. Throws InputError for a name that is taken.
@@ -143,6 +153,8 @@ class WorldDriver {
 
     void save_rest(ArchiveWriter& ar) const;
     void restore_rest(ArchiveReader& ar, const std::function<void()>& restore_world);
+    void require_new_constraint(const std::string& what, const std::string& name) const;
+    void warn_of_jump(const physics::Constraint& constraint);
     void require_led(sim::ToolId tool) const;
     void require_posable(sim::ToolId tool, const Pose& pose) const;
     void make_step(double end, double part, bool is_last, Report& report);

@@ -1,12 +1,16 @@
 // What a program does with the tools, constraints and loads of a world.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "incise/base/error.h"
+#include "incise/base/number_format.h"
 #include "incise/python/world_driver.h"
+#include "incise/scenario/added_parts.h"
 #include "incise/scenario/diagnostics.h"
 #include "incise/scenario/held_tool.h"
+#include "incise/topology/mesh_metrics.h"
 
 namespace incise::python {
 
@@ -147,12 +151,76 @@ sim::ConstraintId WorldDriver::constraint(const std::string& name) const {
     throw InputError("the world has no constraint '" + name + "'");
 }
 
-void WorldDriver::grasp(const std::string& name, std::vector<VertexId> nodes, const Pose& pose) {
-    require_name("grasp", name);
+void WorldDriver::require_new_constraint(const std::string& what, const std::string& name) const {
+    require_name(what, name);
     for (std::size_t i = 0; i < world_.model().num_constraints(); ++i)
         if (world_.model().constraint_name(i) == name)
-            throw InputError("grasp '" + name +
+            throw InputError(what + " '" + name +
                              "': the world has a constraint of this name already");
+}
+
+void WorldDriver::add_constraint(const std::string& name, const scenario::Value& definition) {
+    require_new_constraint("constraint", name);
+    const physics::Constraint built =
+        scenario::build_added_constraint(definition, name, world_.mesh(), warnings_);
+    world_.add_constraint(built);
+    warn_of_jump(built);
+}
+
+void WorldDriver::set_constraint(const std::string& name, const scenario::Value& definition) {
+    const sim::ConstraintId id = constraint(name);
+    const physics::Constraint built =
+        scenario::build_added_constraint(definition, name, world_.mesh(), warnings_);
+    world_.set_constraint(id, built);
+    warn_of_jump(built);
+}
+
+/// Warns of a constraint that prescribes other positions than those that its nodes have.
+void WorldDriver::warn_of_jump(const physics::Constraint& constraint) {
+    constexpr double small = 0.05;  // of an element
+    const double t = world_.time();
+    const auto& [angles, displacements] = std::tie(constraint.angle, constraint.displacement);
+    const double angle = angles.is_empty() ? 0.0 : angles.at(t);
+    const Vec3 by = displacements.is_empty() ? Vec3(Vec3::Zero()) : displacements.at(t);
+    const Eigen::AngleAxisd turn(angle, constraint.axis);
+    double jump = 0.0;
+    for (const auto& member : constraint.nodes.members()) {
+        const Vec3& rest = world_.mesh().rest_position(member.node);
+        const Vec3 target = constraint.point + turn * (rest - constraint.point) + by;
+        Vec3 way = target - world_.positions()[member.node.index()];
+        for (int i = 0; i < 3; ++i)
+            if (!constraint.components[static_cast<std::size_t>(i)]) way[i] = 0.0;
+        jump = std::max(jump, way.norm());
+    }
+    if (jump > small * topology::mean_element_length(world_.mesh()))
+        warnings_.push_back("constraint '" + constraint.name + "' moves nodes by up to " +
+                            format_number(jump) +
+                            " m in the next step: it prescribes where they are relative to their "
+                            "positions at rest; grasp() holds nodes where they are");
+}
+
+void WorldDriver::add_load(const std::string& name, const scenario::Value& definition) {
+    require_name("load", name);
+    const auto& all = world_.model().loads().all();
+    if (std::ranges::find(all, name, &physics::Load::name) != all.end())
+        throw InputError("load '" + name + "': the world has a load of this name already");
+    world_.add_load(scenario::build_added_load(definition, name, world_.mesh(), warnings_));
+}
+
+void WorldDriver::set_load(const std::string& name, const scenario::Value& definition) {
+    const sim::LoadId id = load(name);
+    world_.set_load(id, scenario::build_added_load(definition, name, world_.mesh(), warnings_));
+}
+
+void WorldDriver::remove_load(const std::string& name) { world_.remove_load(load(name)); }
+
+void WorldDriver::set_material(const scenario::Value& definition) {
+    const auto [material, regions, fibre] = scenario::build_added_material(definition, warnings_);
+    world_.set_material(material, regions, fibre);
+}
+
+void WorldDriver::grasp(const std::string& name, std::vector<VertexId> nodes, const Pose& pose) {
+    require_new_constraint("grasp", name);
     world_.grasp(name, std::move(nodes), pose);
 }
 

@@ -105,28 +105,68 @@ void read_motion(const TableReader& constraint, double end_time, ConstraintSpec&
     }
 }
 
+ConstraintSpec read_constraint(const TableReader& constraint, double end_time) {
+    ConstraintSpec spec;
+    spec.location = constraint.location_text("where");
+    constraint.require("where", "what it holds, as in where = { nodes = [0, 1, 2] }");
+    spec.where = read_selection(constraint);
+    spec.fixed = read_axes(constraint);
+    read_motion(constraint, end_time, spec);
+    const bool moves = constraint.has("move") || constraint.has("rotate");
+    if (!constraint.has("fix") && moves) spec.fixed = {true, true, true};
+    // Whether it agrees with other constraints cannot be judged then.
+    if (!constraint.is_sound("move") || !constraint.is_sound("rotate") ||
+        !constraint.is_sound("about"))
+        spec.fixed = {};
+    if (!constraint.has("fix") && !moves)
+        constraint.error({}, "holds nothing: give fix = \"xyz\", or move, or rotate");
+    return spec;
+}
+
+/// @param is_one_kind  set to true if the section has a load of one kind
+LoadSpec read_load(const TableReader& load, double end_time, bool& is_one_kind) {
+    LoadSpec spec;
+    spec.location = load.location_text("where");
+    spec.where = read_selection(load);
+    is_one_kind = load.one_of({"nodal_force", "traction", "pressure", "body_force"}).has_value();
+    if (load.has("nodal_force")) spec.load = NodalForce{load.vector("nodal_force")};
+    if (load.has("traction")) spec.load = Traction{load.vector("traction")};
+    if (load.has("pressure")) spec.load = Pressure{load.number("pressure", 0.0)};
+    if (load.has("body_force")) spec.load = BodyForce{load.vector("body_force")};
+    spec.factor =
+        read_time_keys<double>(load, "factor", {factor_keys}, end_time, [](const TableReader& row) {
+            row.require("value", "as in value = 1.0");
+            return row.number("value", 1.0);
+        });
+    return spec;
+}
+
+constexpr const char* no_name = "is given where it is added: leave it out";
+
 }  // namespace
+
+ConstraintSpec read_added_constraint(const Table& table, Diagnostics& diagnostics) {
+    const TableReader constraint(table, SourceLocation{}, "", {constraint_keys}, diagnostics);
+    if (constraint.has("name")) constraint.error("name", no_name);
+    return read_constraint(constraint, 0.0);
+}
+
+LoadSpec read_added_load(const Table& table, Diagnostics& diagnostics) {
+    const TableReader load(table, SourceLocation{}, "", {load_keys}, diagnostics);
+    if (load.has("name")) load.error("name", no_name);
+    bool is_one_kind = false;
+    return read_load(load, 0.0, is_one_kind);
+}
 
 std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end_time,
                                              std::vector<std::string>& names) {
     std::vector<ConstraintSpec> specs;
     std::size_t number = 0;
     for (const auto& constraint : root.tables("constraint", {constraint_keys})) {
-        ConstraintSpec spec;
-        spec.name = read_name(constraint, "constraint_" + std::to_string(++number), names);
-        spec.location = constraint.location_text("where");
-        constraint.require("where", "what it holds, as in where = { nodes = [0, 1, 2] }");
-        spec.where = read_selection(constraint);
-        spec.fixed = read_axes(constraint);
-        read_motion(constraint, end_time, spec);
-        const bool moves = constraint.has("move") || constraint.has("rotate");
-        if (!constraint.has("fix") && moves) spec.fixed = {true, true, true};
-        // Whether it agrees with other constraints cannot be judged then.
-        if (!constraint.is_sound("move") || !constraint.is_sound("rotate") ||
-            !constraint.is_sound("about"))
-            spec.fixed = {};
-        if (!constraint.has("fix") && !moves)
-            constraint.error({}, "holds nothing: give fix = \"xyz\", or move, or rotate");
+        const std::string usual_name = "constraint_" + std::to_string(++number);
+        std::string name = read_name(constraint, usual_name, names);
+        ConstraintSpec spec = read_constraint(constraint, end_time);
+        spec.name = std::move(name);
         if (constraint.is_sound("where")) specs.push_back(std::move(spec));
     }
     return specs;
@@ -137,21 +177,11 @@ std::vector<LoadSpec> read_loads(const TableReader& root, double end_time) {
     std::vector<std::string> names;
     std::size_t number = 0;
     for (const auto& load : root.tables("load", {load_keys})) {
-        LoadSpec spec;
-        spec.name = read_name(load, "load_" + std::to_string(++number), names);
-        spec.location = load.location_text("where");
-        spec.where = read_selection(load);
-        const auto kind = load.one_of({"nodal_force", "traction", "pressure", "body_force"});
-        if (load.has("nodal_force")) spec.load = NodalForce{load.vector("nodal_force")};
-        if (load.has("traction")) spec.load = Traction{load.vector("traction")};
-        if (load.has("pressure")) spec.load = Pressure{load.number("pressure", 0.0)};
-        if (load.has("body_force")) spec.load = BodyForce{load.vector("body_force")};
-        spec.factor = read_time_keys<double>(load, "factor", {factor_keys}, end_time,
-                                             [](const TableReader& row) {
-                                                 row.require("value", "as in value = 1.0");
-                                                 return row.number("value", 1.0);
-                                             });
-        if (kind && load.is_sound("where")) specs.push_back(std::move(spec));
+        std::string name = read_name(load, "load_" + std::to_string(++number), names);
+        bool is_one_kind = false;
+        LoadSpec spec = read_load(load, end_time, is_one_kind);
+        spec.name = std::move(name);
+        if (is_one_kind && load.is_sound("where")) specs.push_back(std::move(spec));
     }
     return specs;
 }

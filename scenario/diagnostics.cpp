@@ -32,7 +32,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return last[b.size()];
 }
 
+/// Without a path the text is about the whole table.
 std::string about_key(std::string_view path, std::string_view text) {
+    if (path.empty()) return std::string(text);
     return std::string("key ").append(in_quotes(path)).append(": ").append(text);
 }
 

@@ -3,8 +3,7 @@
 
 #include <utility>
 
-#include "incise/base/error.h"
-#include "incise/scenario/diagnostics.h"
+#include "incise/scenario/definition.h"
 #include "incise/scenario/scenario_sections.h"
 #include "incise/scenario/tool_build.h"
 
@@ -12,19 +11,13 @@ namespace incise::scenario {
 
 HeldTool build_held_tool(const Value& definition, const std::filesystem::path& folder,
                          const topology::Mesh& mesh, const std::string& why_no_contact) {
-    const Table* table = definition.get<Table>();
-    if (!table)
-        throw InputError("tool: is " + definition.description() +
-                         ", not a table of keys such as kind = \"blade\"");
-    Diagnostics diagnostics("tool", {});
-    ToolSpec spec = read_held_tool(*table, folder, why_no_contact, diagnostics);
-    if (diagnostics.has_errors()) {
-        std::string text;
-        for (const std::string& error : diagnostics.errors())
-            text += (text.empty() ? "" : "\n") + error;
-        throw InputError(text);
-    }
-    HeldTool tool{.kind = spec.name, .shape = {}, .warnings = diagnostics.warnings()};
+    HeldTool tool;
+    ToolSpec spec =
+        read_definition(definition, "tool", "kind = \"blade\"", tool.warnings,
+                        [&](const Table& table, Diagnostics& diagnostics) {
+                            return read_held_tool(table, folder, why_no_contact, diagnostics);
+                        });
+    tool.kind = spec.name;
     tool.shape = build_tool(with_mode(std::move(spec), mesh), tool.warnings).shape;
     return tool;
 }

@@ -288,24 +288,38 @@ MaterialSpec read_material(const TableReader& material, const MeshSpec& mesh) {
     return spec;
 }
 
+const std::vector<std::string_view>& all_material_keys() {
+    static const std::vector<std::string_view> all = [] {
+        std::vector<std::string_view> keys;
+        for (const std::span<const std::string_view> some :
+             {std::span<const std::string_view>(common_keys),
+              std::span<const std::string_view>(heml_keys),
+              std::span<const std::string_view>(hybmss_keys)})
+            keys.insert(keys.end(), some.begin(), some.end());
+        for (const auto& row : parameters()) keys.push_back(row.key);
+        return keys;
+    }();
+    return all;
+}
+
 }  // namespace
 
-std::vector<MaterialSpec> read_materials(const TableReader& root, const MeshSpec& mesh) {
-    std::vector<std::string_view> keys;
-    for (const std::span<const std::string_view> some :
-         {std::span<const std::string_view>(common_keys),
-          std::span<const std::string_view>(heml_keys),
-          std::span<const std::string_view>(hybmss_keys)})
-        keys.insert(keys.end(), some.begin(), some.end());
-    for (const auto& row : parameters()) keys.push_back(row.key);
+MaterialSpec read_added_material(const Table& table, Diagnostics& diagnostics) {
+    const TableReader material(table, SourceLocation{}, "", {all_material_keys()}, diagnostics);
+    MaterialSpec spec = read_material(material, {});
+    if (material.has("fibre_array"))
+        material.error("fibre_array", "is read with the mesh: give fibre = [x, y, z]");
+    return spec;
+}
 
+std::vector<MaterialSpec> read_materials(const TableReader& root, const MeshSpec& mesh) {
     std::vector<MaterialSpec> specs;
     std::vector<int> claimed;
     bool rest_is_claimed = false;
     const std::string remedy = "add a section [[material]] with density, young and poisson";
     if (root.require("material", remedy) && root.is_empty_array("material"))
         root.error("material", "is empty: " + remedy);
-    const auto tables = root.tables("material", {keys});
+    const auto tables = root.tables("material", {all_material_keys()});
     for (const auto& material : tables) {
         specs.push_back(read_material(material, mesh));
         if (const auto& regions = specs.back().regions) {

@@ -40,6 +40,12 @@ std::vector<ConstraintSpec> read_constraints(const TableReader& root, double end
                                              std::vector<std::string>& names);
 /// Reads the [[load]] sections. The result has only loads of one kind whose selection is sound.
 std::vector<LoadSpec> read_loads(const TableReader& root, double end_time);
+/// Read what a program adds to a world which runs: a section without a name, which the program
+/// gives beside it.
+ConstraintSpec read_added_constraint(const Table& table, Diagnostics& diagnostics);
+LoadSpec read_added_load(const Table& table, Diagnostics& diagnostics);
+/// The same; no array of the mesh file has its fibres.
+MaterialSpec read_added_material(const Table& table, Diagnostics& diagnostics);
 /// Reads the [[tool]] and [[obstacle]] sections. The result has only tools of a known kind, and
 /// tools that name the file of a surface. A tool with a faulty path or shape has an empty path.
 /// @param root      the root table

@@ -11,6 +11,7 @@
 namespace incise::sim {
 
 class EditLog;
+struct FormerMaterials;
 
 /// A moment of a world: see World::undo_point() and World::undo(). A value, which is cheap to copy.
 /// It holds what moves: positions, velocities and tools. The mesh is not in it: the world takes
@@ -25,13 +26,16 @@ class UndoPoint {
 
   private:
     friend class World;
-    UndoPoint(std::shared_ptr<EditLog> edits, std::uint64_t epoch, std::string motion)
+    UndoPoint(std::shared_ptr<EditLog> edits, std::uint64_t epoch,
+              std::shared_ptr<FormerMaterials> materials, std::string motion)
         : edits_(std::move(edits)),
           epoch_(epoch),
+          materials_(std::move(materials)),
           motion_(std::make_shared<const std::string>(std::move(motion))) {}
 
     std::shared_ptr<EditLog> edits_;  // since then
     std::uint64_t epoch_;             // of the mesh
+    std::shared_ptr<FormerMaterials> materials_;
     std::shared_ptr<const std::string> motion_;
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "incise/base/number_format.h"
+#include "incise/contact/tool_contact.h"
 #include "incise/physics/body/element_snapshot.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
@@ -122,6 +123,11 @@ double World::suture_length(ToolId id) const { return parts_->tool_of(id).length
 void World::untie_suture(ToolId id) { parts_->tool_of(id).untie(); }
 bool World::is_suture_tied(ToolId id) const { return parts_->tool_of(id).is_tied(); }
 
+std::span<const contact::ToolContactPoint> World::tool_contacts(ToolId id) const {
+    ToolActor& tool = parts_->tool_of(id);
+    const bool touches = tool.is_present() && parts_->contact && tool.contact();
+    return touches ? tool.contact()->points() : std::span<const contact::ToolContactPoint>();
+}
 bool World::is_tool_present(ToolId id) const { return parts_->tool_of(id).is_present(); }
 Pose World::tool_pose(ToolId id) const { return parts_->tool_of(id).pose(); }
 const ToolDef& World::tool(ToolId id) const { return parts_->tool_of(id).def(); }
@@ -132,86 +138,6 @@ std::optional<ToolId> World::find_tool(std::string_view name) const {
     return tools()[static_cast<std::size_t>(found - parts_->tools.begin())];
 }
 std::span<const ToolId> World::tools() const { return parts_->tool_ids.all(); }
-
-ConstraintId World::add_constraint(physics::Constraint constraint) {
-    Parts& p = *parts_;
-    require_sound(constraint, p.mesh);
-    p.model.add_constraint(std::move(constraint));
-    p.grasps.emplace_back();
-    return p.constraints.add();
-}
-
-std::span<const ConstraintId> World::constraints() const { return parts_->constraints.all(); }
-
-ConstraintId World::grasp(std::string name, std::vector<VertexId> nodes, const Pose& pose) {
-    Parts& p = *parts_;
-    for (const VertexId n : nodes)
-        if (!n.is_valid() || n.index() >= p.mesh.node_capacity())
-            throw InputError("grasp '" + name + "': there is no node " + std::to_string(n.value));
-    if (!pose.is_sound()) throw InputError("grasp '" + name + "': its pose is none");
-    const ConstraintId id =
-        add_constraint(physics::make_grip(std::move(name), std::move(nodes), pose));
-    p.grasps.back().emplace(pose);
-    return id;
-}
-
-std::optional<Pose> World::grasp_pose(ConstraintId constraint) const {
-    const auto& grasp = parts_->grasps[parts_->constraints.position_of(constraint)];
-    return grasp ? std::optional(grasp->pose) : std::nullopt;
-}
-
-void World::release(ConstraintId constraint) {
-    Parts& p = *parts_;
-    const std::size_t index = p.constraints.position_of(constraint);
-    p.model.remove_constraint(index);
-    p.constraints.remove(constraint);
-    p.grasps.erase(p.grasps.begin() + static_cast<std::ptrdiff_t>(index));
-}
-
-const physics::Reaction& World::reaction(ConstraintId constraint) const {
-    return parts_->model.reactions()[parts_->constraints.position_of(constraint)];
-}
-
-void World::add_force_term(std::unique_ptr<physics::ForceTerm> term) {
-    if (!term) throw InputError("a force term is given as null");
-    parts_->model.add_force_term(std::move(term));
-    parts_->loads_have_changed = true;
-    parts_->stable_step = parts_->present_bound();
-}
-
-void World::remove_force_term(const physics::ForceTerm* term) {
-    if (!parts_->model.remove_force_term(term))
-        throw InputError("the world does not have this force term");
-    parts_->loads_have_changed = true;
-    parts_->stable_step = parts_->present_bound();
-}
-
-LoadId World::add_load(physics::Load load) {
-    Parts& p = *parts_;
-    require_sound(load, p.mesh);
-    p.model.add_load(std::move(load));
-    p.loads_have_changed = true;
-    return p.loads.add();
-}
-
-std::span<const LoadId> World::loads() const { return parts_->loads.all(); }
-
-void World::set_load_factor(LoadId load, double factor) {
-    Parts& p = *parts_;
-    const std::size_t index = p.loads.position_of(load);
-    if (!std::isfinite(factor))
-        throw InputError("load '" + p.model.loads().all()[index].name +
-                         "': its factor is not finite");
-    p.model.set_load_factor(index, physics::TimeCurve<double>({{p.time, factor}}));
-    p.loads_have_changed = true;
-}
-
-void World::remove_load(LoadId load) {
-    Parts& p = *parts_;
-    p.model.remove_load(p.loads.position_of(load));
-    p.loads.remove(load);
-    p.loads_have_changed = true;
-}
 
 const topology::BoundarySurface& World::surface() { return parts_->built_surface(); }
 std::vector<std::size_t> World::take_surface_changes() {

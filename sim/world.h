@@ -28,6 +28,9 @@
 #include "incise/topology/mesh_data.h"
 #include "incise/topology/pose.h"
 
+namespace incise::contact {
+struct ToolContactPoint;
+}
 namespace incise::cutting {
 class Cutter;
 }
@@ -214,6 +217,12 @@ class World {
     /// True from tie_suture() to untie_suture(), until the thread has torn or an edit has left it
     /// fewer than two points.
     bool is_suture_tied(ToolId tool) const;
+    /// Returns the points at which tissue exerted a force on a probe or a grasper in the last part
+    /// of the last step; see contact::ToolContactPoint. In a step of one part, the forces add up to
+    /// that of its ToolState. Nothing for other tools, for tools that are not there, and after
+    /// restore() and undo().
+    /// @lifetime  until the next step, or until the tool is placed or opened
+    std::span<const contact::ToolContactPoint> tool_contacts(ToolId tool) const;
     bool is_tool_present(ToolId tool) const;
     Pose tool_pose(ToolId tool) const;
     const ToolDef& tool(ToolId tool) const;
@@ -234,6 +243,9 @@ class World {
     ConstraintId grasp(std::string name, std::vector<VertexId> nodes, const Pose& pose);
     /// Returns the present pose of the frame of a grasp; nothing for another constraint.
     std::optional<Pose> grasp_pose(ConstraintId constraint) const;
+    /// Replaces a constraint, which is no grasp, by another one from the next step on. The id
+    /// stays. Throws as add_constraint().
+    void set_constraint(ConstraintId constraint, physics::Constraint by);
     /// Removes a constraint, which may be a grasp. The nodes of the constraint keep their
     /// velocities.
     void release(ConstraintId constraint);
@@ -250,6 +262,8 @@ class World {
     /// Throws InputError, and changes nothing, if the load acts on nothing, or on nodes, faces or
     /// elements that do not exist.
     LoadId add_load(physics::Load load);
+    /// Replaces a load. The id stays. Throws as add_load().
+    void set_load(LoadId load, physics::Load by);
     /// Scales a load by a constant factor, which replaces its previous factor from now on.
     void set_load_factor(LoadId load, double factor);
     void remove_load(LoadId load);
@@ -264,6 +278,26 @@ class World {
     void add_force_term(std::unique_ptr<physics::ForceTerm> term);
     /// Removes and destroys a force term. Throws InputError if the world does not have it.
     void remove_force_term(const physics::ForceTerm* term);
+
+    /// Sets the gravity, m/s2, from the next step on. Throws InputError if it is not finite.
+    void set_gravity(const Vec3& gravity);
+    /// Sets the mass-proportional damping, 1/s, from the next step on. Throws InputError below 0.
+    void set_damping(double damping);
+    /// Gives regions another material from the next step on: tissue that is heated, swollen or
+    /// torn. The body keeps positions, velocities and masses; the jump of its elastic energy counts
+    /// as external work. Viscous stress stays where the Prony series has as many terms of the same
+    /// rule as before; else it begins anew. restore() then needs bytes of a world with these
+    /// materials; undo() brings the former ones back.
+    /// @param regions  empty: all
+    /// @param fibre    the direction of the fibres at rest, of unit length, for a law that needs
+    /// it;
+    ///                 if not set, elements keep theirs
+    /// Throws InputError, and changes nothing, for an invalid material, one with another density
+    /// than that of the region, a region that the body does not have, a material that does not suit
+    /// its elements, and one that is too soft or stiff for a tool that is there.
+    /// Cost: O(n), that of a new world without its mesh.
+    void set_material(const physics::Material& material, std::span<const int> regions = {},
+                      const std::optional<Vec3>& fibre = {});
 
     /// Returns the surface of the body. The surface is built at the first call and then follows the
     /// edits.

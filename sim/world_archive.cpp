@@ -95,7 +95,8 @@ void World::Parts::save_rest(ArchiveWriter& ar) const {
     for (const auto& tool : tools) tool->save(ar);
 }
 
-void World::Parts::go_back(std::span<const physics::BodyEdit* const> edits, ArchiveReader& ar) {
+void World::Parts::go_back(std::span<const physics::BodyEdit* const> edits,
+                           const std::shared_ptr<FormerMaterials>& with, ArchiveReader& ar) {
     for (std::size_t i = edits.size(); i-- > 0;) {
         const physics::BodyEdit back = inverse(*edits[i]);
         topology::replay(mesh, back.material);
@@ -103,6 +104,13 @@ void World::Parts::go_back(std::span<const physics::BodyEdit* const> edits, Arch
         if (surface) surface->apply(mesh, back.material);
     }
     time = read_time(ar);
+    if (with != materials) {
+        physics::MaterialTable table = *with->table;
+        if (!table.fibres.empty())
+            table.fibres.resize(model.fragments().element_capacity(), Vec3::Zero());
+        model.set_materials(std::move(table), time);
+        materials = with;
+    }
     model.restore_motion(ar, time);
     // The rest is made anew and then read, as in a world that is restored.
     number = next_number();
@@ -183,7 +191,7 @@ void World::restore(std::string_view bytes) {
 UndoPoint World::undo_point() const {
     ArchiveWriter ar;
     parts_->save_motion(ar);
-    return {parts_->log_end, parts_->mesh.epoch(), ar.take()};
+    return {parts_->log_end, parts_->mesh.epoch(), parts_->materials, ar.take()};
 }
 
 void World::undo(const UndoPoint& point) {
@@ -198,7 +206,7 @@ void World::undo(const UndoPoint& point) {
             "the world cannot go back: it has failed within an edit; restore a state that was "
             "saved before");
     ArchiveReader ar(*point.motion_);
-    parts_->go_back(*edits, ar);
+    parts_->go_back(*edits, point.materials_, ar);
     point.edits_->cut_off();
     parts_->log_end = point.edits_;
 }

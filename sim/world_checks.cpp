@@ -160,20 +160,30 @@ struct FaultOfMethod {
     }
 };
 
-void require_sound(const physics::Material& material, std::size_t number) {
+}  // namespace
+
+void require_sound(const physics::Material& material, const std::string& what) {
     std::string fault;
     if (!(material.density > 0.0 && std::isfinite(material.density)))
         fault = "its density is " + format_number(material.density) + " kg/m3: it must be above 0";
     else
         fault = std::visit(FaultOfMethod{}, material.method);
-    if (!fault.empty()) throw InputError("material " + std::to_string(number) + ": " + fault);
+    if (!fault.empty()) throw InputError(what + ": " + fault);
 }
 
-}  // namespace
+void require_sound_gravity(const Vec3& gravity) {
+    if (!is_finite(gravity)) throw InputError("gravity is not finite");
+}
+
+void require_sound_damping(double damping) {
+    if (!(damping >= 0.0 && std::isfinite(damping)))
+        throw InputError("damping is " + format_number(damping) + " 1/s: it must be 0 or more");
+}
 
 void require_sound(const WorldDef& def, const Mesh& mesh) {
     if (def.materials.empty()) throw InputError("the definition of a world has no material");
-    for (std::size_t i = 0; i < def.materials.size(); ++i) require_sound(def.materials[i], i);
+    for (std::size_t i = 0; i < def.materials.size(); ++i)
+        require_sound(def.materials[i], "material " + std::to_string(i));
     for (const auto& [region, material] : def.material_of_region)
         if (material >= def.materials.size())
             throw InputError("region " + std::to_string(region) + " has material " +
@@ -185,9 +195,8 @@ void require_sound(const WorldDef& def, const Mesh& mesh) {
     if (def.precision != physics::Precision::double_precision &&
         def.precision != physics::Precision::single_precision)
         throw InputError("there is no such precision");
-    if (!is_finite(def.gravity)) throw InputError("gravity is not finite");
-    if (!(def.damping >= 0.0 && std::isfinite(def.damping)))
-        throw InputError("damping is " + format_number(def.damping) + " 1/s: it must be 0 or more");
+    require_sound_gravity(def.gravity);
+    require_sound_damping(def.damping);
     if (def.solver != Solver::semi_implicit_euler && def.solver != Solver::implicit_euler &&
         def.solver != Solver::statics)
         throw InputError("there is no such solver");

@@ -16,6 +16,10 @@ void require_sound(const physics::Load& load, const topology::Mesh& mesh);
 
 /// Throws InputError for a value out of range, for an invalid material, constraint or load, and for
 /// an index out of range.
+/// @param what  what the material is called
+void require_sound(const physics::Material& material, const std::string& what);
+void require_sound_gravity(const Vec3& gravity);
+void require_sound_damping(double damping);
 void require_sound(const WorldDef& def, const topology::Mesh& mesh);
 /// Throws InputError unless `n` is at least 1.
 void require_sound_num_threads(int n);

@@ -66,6 +66,12 @@ struct BoundInterval {
 /// Relative rounding of a step that is an exact fraction of an interval.
 inline constexpr double rounding_of_steps = 1e-8;
 
+/// The materials before they were changed, which moments from before then refer to. Empty while the
+/// world has them.
+struct FormerMaterials {
+    std::optional<physics::MaterialTable> table;  // its fibres are by id of fragments
+};
+
 // The parts of a world. Their order matters: later ones refer to earlier ones.
 struct World::Parts {
     /// The present pose of the frame of a grasp, and its pose at the end of the step.
@@ -82,7 +88,9 @@ struct World::Parts {
     Parts(const Parts& former, ArchiveReader& ar);
     void save(ArchiveWriter& ar) const;
     /// Takes back edits, from the last one on, and restores what save_motion() wrote before them.
-    void go_back(std::span<const physics::BodyEdit* const> edits, ArchiveReader& ar);
+    /// @param with  the materials of then
+    void go_back(std::span<const physics::BodyEdit* const> edits,
+                 const std::shared_ptr<FormerMaterials>& with, ArchiveReader& ar);
     void save_motion(ArchiveWriter& ar) const;
     /// True if somebody has a moment to go back to.
     bool is_undo_wanted() const { return log_end.use_count() > 1; }
@@ -118,6 +126,7 @@ struct World::Parts {
     /// Lets contact and tools follow the edits of a step.
     void follow_with_contact();
     ToolActor& tool_of(ToolId id) const { return *tools[tool_ids.position_of(id)]; }
+    physics::MaterialTable materials_with_fibres() const;
     Tissue tissue() { return {mesh, model, cutter, contact.get()}; }
     topology::BoundarySurface& built_surface();
 
@@ -139,6 +148,7 @@ struct World::Parts {
     HandleTable<LoadId> loads{"load", number};
     bool loads_have_changed = false;  // since the forces were computed
     std::shared_ptr<EditLog> log_end = std::make_shared<EditLog>();
+    std::shared_ptr<FormerMaterials> materials = std::make_shared<FormerMaterials>();
     StepReport report;
     std::uint64_t num_steps = 0;
     double stable_step = 0.0;      // as last computed, s

@@ -277,6 +277,12 @@ void Loads::add(Load load, const BodyView& body) {
     is_up_to_date_ = false;
 }
 
+void Loads::set(std::size_t i, Load load, const BodyView& body) {
+    share_out(load, body);
+    loads_[i] = std::move(load);
+    is_up_to_date_ = false;
+}
+
 void Loads::remove(std::size_t i) {
     loads_.erase(loads_.begin() + static_cast<std::ptrdiff_t>(i));
     is_up_to_date_ = false;

@@ -97,7 +97,9 @@ class Loads final : public ForceTerm {
     const Vec3& gravity() const { return gravity_; }  ///< m/s2
 
     std::span<const Load> all() const { return loads_; }
+    void set_gravity(const Vec3& gravity) { gravity_ = gravity; }
     void add(Load load, const BodyView& body);
+    void set(std::size_t i, Load load, const BodyView& body);
     void remove(std::size_t i);
     void set_factor(std::size_t i, TimeCurve<double> factor) {
         loads_[i].factor = std::move(factor);

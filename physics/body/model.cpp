@@ -85,12 +85,14 @@ Model::Model(const topology::Mesh& mesh, FragmentMesh fragments, const MaterialT
       constraints_(view(), std::move(boundary_conditions.constraints)),
       loads_(boundary_conditions.gravity, {}, view()),
       reactions_(constraints_.size()) {
-    fragments_.hold(held_by(mesh, constraints_.all()));
+    hold_constrained();
     resize(fragments_.node_capacity());
     for (std::size_t n = 0; n < fragments_.node_capacity(); ++n) gather(NodeId(n));
     loads_ = Loads(boundary_conditions.gravity, std::move(boundary_conditions.loads), view());
     compute_forces(0.0);
 }
+
+void Model::hold_constrained() { fragments_.hold(held_by(mesh_, constraints_.all())); }
 
 void Model::resize(std::size_t num_nodes) {
     elastic_forces_.resize(num_nodes, Vec3::Zero());
@@ -159,54 +161,6 @@ void Model::visit_outer_tangents(std::span<const Vec3> positions, double time,
                                  TangentSink& sink) const {
     loads_.visit_tangents(positions, time, sink);
     for (const auto& term : added_terms_) term->visit_tangents(positions, time, sink);
-}
-
-void Model::add_constraint(Constraint constraint) {
-    constraints_.add(view(), std::move(constraint));
-    fragments_.hold(held_by(mesh_, constraints_.all()));
-    reactions_.emplace_back();
-    ++structure_version_;
-}
-
-void Model::remove_constraint(std::size_t i) {
-    constraints_.remove(view(), i);
-    fragments_.hold(held_by(mesh_, constraints_.all()));
-    reactions_.erase(reactions_.begin() + static_cast<std::ptrdiff_t>(i));
-    ++structure_version_;
-}
-
-void Model::add_load(Load load) {
-    loads_.add(std::move(load), view());
-    ++structure_version_;
-}
-
-void Model::remove_load(std::size_t i) {
-    loads_.remove(i);
-    ++structure_version_;
-}
-
-void Model::add_force_term(std::unique_ptr<ForceTerm> term) {
-    term->update(view());
-    for (const NodeId n : fragments_.nodes())
-        if (const double bound = term->stiffness_bound(n);
-            !(bound >= 0.0 && std::isfinite(bound))) {
-            std::ostringstream text;
-            text << "a force term bounds its stiffness at the node that is at rest at "
-                 << fragments_.rest_position(n).transpose() << " by " << bound
-                 << " N/m: it must be finite, and 0 or more";
-            throw InputError(text.str());
-        }
-    added_terms_.push_back(std::move(term));
-    for (const NodeId n : fragments_.nodes()) gather(n);
-    ++structure_version_;
-}
-
-bool Model::remove_force_term(const ForceTerm* term) {
-    if (std::erase_if(added_terms_, [&](const auto& t) { return t.get() == term; }) == 0)
-        return false;
-    for (const NodeId n : fragments_.nodes()) gather(n);
-    ++structure_version_;
-    return true;
 }
 
 void Model::take_force_terms(Model& former, double time) {

@@ -227,6 +227,8 @@ class Model {
     /// constraint prescribes another value of a component of a node. Cost: O(n) in the nodes of the
     /// mesh and of all constraints.
     void add_constraint(Constraint constraint);
+    /// Replaces constraint `i`. Throws and costs as add_constraint().
+    void set_constraint(std::size_t i, Constraint constraint);
     /// Removes constraint `i`; the indices of later constraints decrease by one. Cost as for
     /// add_constraint().
     void remove_constraint(std::size_t i);
@@ -237,6 +239,8 @@ class Model {
 
     /// Appends a load to the list. The forces stay as they are until compute_forces() is called.
     void add_load(Load load);
+    /// Replaces load `i`. The forces stay as they are until compute_forces() is called.
+    void set_load(std::size_t i, Load load);
     /// Removes load `i`; the indices of later loads decrease by one. The forces stay as they are
     /// until compute_forces() is called.
     void remove_load(std::size_t i);
@@ -245,7 +249,20 @@ class Model {
     void set_load_factor(std::size_t i, TimeCurve<double> factor) {
         loads_.set_factor(i, std::move(factor));
     }
+    /// Sets the gravity, m/s2. The forces stay as they are until compute_forces() is called.
+    void set_gravity(const Vec3& gravity) { loads_.set_gravity(gravity); }
+    /// Sets the mass-proportional damping, 1/s.
+    void set_damping(double damping) { damping_ = damping; }
     const Loads& loads() const { return loads_; }
+
+    /// Replaces the materials. The body keeps positions, velocities and masses. The jump of its
+    /// elastic energy counts as external work. Terms of a Prony series keep their stress where the
+    /// new material has as many of the same rule; others begin without stress.
+    /// Throws InputError, and changes nothing, for another density in a region, and as ElementStore
+    /// does. Cost: O(n), that of a new model.
+    /// @param table  its fibres are by id of fragments
+    /// @param time   for the forces, s
+    void set_materials(MaterialTable table, double time);
 
     /// Adds a term to the outer forces. Archives do not contain added terms: after a restore, the
     /// caller must add them again. Throws InputError, and adds nothing, for a bound on the
@@ -428,6 +445,7 @@ class Model {
     NodeSums sums_of(NodeRange range) const;
     BodyView view() const { return {mesh_, fragments_, elements_, masses_, state_.positions()}; }
     void update_outer_terms();
+    void hold_constrained();
     void resize(std::size_t num_nodes);
     void gather(NodeId n);
     void follow(const BodyEdit& edit);

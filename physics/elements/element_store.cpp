@@ -36,14 +36,6 @@ std::shared_ptr<ElementBlock> make_block(const Material& material, Precision pre
                                                         material.density);
 }
 
-/// Returns how many values an element of the material stores; the law does not matter.
-std::size_t history_size(const HyperElasticLinks& links) {
-    if (links.prony.empty()) return 0;
-    return links.prony_rule == PronyRule::nodal
-               ? NodalViscousKernel::history_size(links.prony.size())
-               : ViscousKernel::history_size(links.prony.size());
-}
-
 /// Calls visit(range, begin, end) for each range of node ids that has some of `nodes`. These are
 /// nodes[begin] to before nodes[end], and `nodes` is in ascending order.
 template <class Visit>
@@ -59,6 +51,14 @@ void for_each_range(std::span<const std::uint32_t> nodes, Visit visit) {
 }
 
 }  // namespace
+
+std::size_t history_size(const Material& material) {
+    const auto* links = std::get_if<HyperElasticLinks>(&material.method);
+    if (!links || links->prony.empty()) return 0;
+    return links->prony_rule == PronyRule::nodal
+               ? NodalViscousKernel::history_size(links->prony.size())
+               : ViscousKernel::history_size(links->prony.size());
+}
 
 ElementStore::ElementStore(const FragmentMesh& fragments, const topology::Mesh& mesh,
                            const MaterialTable& table)
@@ -289,8 +289,7 @@ std::vector<std::shared_ptr<const ElementBlock>> ElementStore::share_blocks() co
 std::size_t ElementStore::history_size() const {
     std::size_t most = 0;
     for (const Material& material : table_.materials)
-        if (const auto* links = std::get_if<HyperElasticLinks>(&material.method))
-            most = std::max(most, physics::history_size(*links));
+        most = std::max(most, physics::history_size(material));
     return most;
 }
 

@@ -37,6 +37,10 @@ struct MaterialTable {
     Precision precision = Precision::double_precision;
 };
 
+/// Returns how many values an element of the material stores in ViscousHistory: the stress of its
+/// law, then as much for each term of its Prony series. 0 without viscosity.
+std::size_t history_size(const Material& material);
+
 /// Why a material does not suit an element.
 enum class MaterialMisfit {
     needs_tetrahedra,  ///< its method is for tetrahedra, and the element is a hexahedron

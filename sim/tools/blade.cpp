@@ -37,11 +37,10 @@ class BladeActor final : public TouchingActor<Blade, contact::BladeContact> {
         require_none(fault_of(shape()));
     }
 
-    void require_fit(const Tissue& tissue) const override {
-        TouchingActor::require_fit(tissue);
+    void require_fit(const Tissue& tissue, const physics::MaterialTable& materials) const override {
+        TouchingActor::require_fit(tissue, materials);
         if (tissue.contact)
-            require_none(contact::fault_of_toughness(shape(), tissue.model.elements().materials(),
-                                                     tissue.contact->size()));
+            require_none(contact::fault_of_toughness(shape(), materials, tissue.contact->size()));
     }
 
     contact::ToolContact* touch(const Tissue& tissue, double from, double to,

@@ -19,7 +19,7 @@ class GrasperActor final : public TouchingActor<cutting::Grasper, contact::Grasp
 
     std::size_t close(const Tissue& tissue) override {
         require_there();
-        contact_with(tissue).close(tissue.model, tissue.contact->surface().triangles, pose());
+        contact_with(tissue).close(tissue.model, tissue.contact->surface(), pose());
         is_closed_ = true;
         return num_held();
     }

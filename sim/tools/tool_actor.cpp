@@ -15,7 +15,7 @@ void ToolActor::refuse(const std::string& why) const {
     throw InputError("tool '" + def_.name + "' " + why);
 }
 
-void ToolActor::require_fit(const Tissue& tissue) const {
+void ToolActor::require_fit(const Tissue& tissue, const physics::MaterialTable&) const {
     if (cutting::feels_force(def_.shape) && !tissue.contact)
         refuse("exerts a force: it needs the explicit solver, with contact enabled");
 }
@@ -88,7 +88,7 @@ namespace {
 std::unique_ptr<ToolActor> sound_actor(const ToolDef& def, const Tissue& tissue) {
     auto actor =
         std::visit([&]<class Shape>(const Shape&) { return make_actor_of<Shape>(def); }, def.shape);
-    actor->require_fit(tissue);
+    actor->require_fit(tissue, tissue.model.elements().materials());
     return actor;
 }
 

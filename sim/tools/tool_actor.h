@@ -50,7 +50,8 @@ class ToolActor {
     bool has_just_left() const { return has_just_left_; }
     const Pose& pose() const { return pose_; }
     /// Throws InputError unless the tool can act on the tissue.
-    virtual void require_fit(const Tissue& tissue) const;
+    /// @param materials  of the tissue, as they are or are to be
+    virtual void require_fit(const Tissue& tissue, const physics::MaterialTable& materials) const;
 
     // What a hand does: see the methods of World with these names.
     void place(const Tissue& tissue, const Pose& pose);

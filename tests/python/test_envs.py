@@ -17,7 +17,8 @@ import numpy as np
 
 import incise
 from incise import envs
-from incise.envs import dissection, line, renderer
+from incise import _renderer as renderer
+from incise.envs import dissection, line
 from incise.envs.base import part_labels
 from incise.envs.check import roll, same
 

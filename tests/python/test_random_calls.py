@@ -129,6 +129,29 @@ def grasp():
         if constraint.is_grasp:
             source.choice([lambda: setattr(constraint, "pose", pose()), constraint.release,
                            lambda: constraint.force])()
+def change():
+    body = world()
+    where = {"box": {"min": [-1, -1, source.choice([-1, 0.039])], "max": [1, 1, 1]}}
+    part = dict(source.choice([
+        {"where": where, "fix": source.choice(["x", "xyz", "q"])}, {"where": where, "pressure": number()},
+        {"where": where, "nodal_force": vector()}, {"where": where, "fix": "z", "move": [
+            {"time": number(), "by": vector()}]}]))
+    if source.random() < 0.3: part[source.choice(["where", "fix", "factor", "name", "x"])] = thing()
+    material = {**support.MATERIAL, "young": source.choice([1e3, 3e4, number()])}
+    if source.random() < 0.3: material[source.choice(["density", "law", "prony", "regions"])] = thing()
+    source.choice([
+        lambda: body.add_constraint(f"c{source.randrange(9)}", part),
+        lambda: body.add_load(f"l{source.randrange(9)}", part),
+        lambda: [source.choice([lambda: c.change(part), c.release])()
+                 for c in body.constraints.values() if c.name != "clamp"],
+        lambda: [source.choice([lambda: load.change(part), load.remove])()
+                 for load in body.loads.values()],
+        lambda: body.set_material(material), lambda: body.set_gravity(vector()),
+        lambda: body.set_damping(number()), lambda: body.undo_point(), lambda: body.undo()])()
+def picture():
+    world().render(source.choice([8, 8, number()]), 6, source.choice([vector(), thing(), {
+        "position": vector(), source.choice(["target", "field_of_view", "x"]): vector()}]),
+        source.choice(["rgb", "depth", ("rgb", "segmentation"), thing()]))
 def arrays():
     body = world()
     for name in ("positions", "velocities", "masses", "cells", "regions", "surface", "node_ids",
@@ -159,7 +182,7 @@ def add():
                                        definition(), source.choice([None, pose()])))
 
 calls = ([lambda: steps(source.choice([1, 2, 5]))] * 8 + [tool_call] * 8 + [enter_view] * 3 +
-         [anything] * 6 + [save] * 2 + [grasp] * 2 + [arrays] * 2 +
+         [anything] * 6 + [save] * 2 + [grasp] * 2 + [arrays] * 2 + [change] * 4 + [picture] * 2 +
          [add] * 3 + [meshes, points_and_cells, unmade, replace, lambda: world().ledger(),
                       lambda: world().edits(), lambda: world().write_vtu("x.vtu")])
 raised, done = {}, 0

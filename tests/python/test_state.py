@@ -118,7 +118,7 @@ class State(unittest.TestCase):
         with self.assertRaisesRegex(incise.InputError, "another world"):
             other.undo(start)
         with self.assertRaises(TypeError):
-            body.undo(None)
+            body.undo(3)
         self.assertEqual(body.save(), state)
         with body.view(), self.assertRaises(BufferError):
             body.undo(start)

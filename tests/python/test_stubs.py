@@ -13,8 +13,8 @@ import incise
 
 # What stubs of pybind11 cannot say: its metaclass, and that a class cannot be made by hand.
 ALLOWED = r"""
-incise\._incise\.(Constraint|CutResult|Load|Mesh|Physics|Pose|StepReport|Surface|Tool|UndoPoint|View|World)
-incise\._incise\.(Constraint|CutResult|Load|Physics|StepReport|Surface|Tool|UndoPoint|View)\.__init__
+incise\._incise\.(Constraint|CutResult|Load|Mesh|Physics|Pose|StepReport|Surface|Tool|ToolContacts|UndoPoint|View|World)
+incise\._incise\.(Constraint|CutResult|Load|Physics|StepReport|Surface|Tool|ToolContacts|UndoPoint|View)\.__init__
 """
 USE = """
 import incise
@@ -30,6 +30,9 @@ with body.view() as view:
 body.restore(body.save())
 point: incise.UndoPoint = body.undo_point()
 body.undo(point)
+picture = body.render(64, 48, (0, -1, 0.5))
+depth: float = float(body.render(channels=("rgb", "depth"))["depth"].min())
+normal: float = float(knife.contacts.normals[0, 2])
 env = incise.envs.PathIncisionEnv(depth=0.004)
 observation, info = env.reset(seed=1)
 """

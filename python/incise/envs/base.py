@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 import incise
 
-from . import gym, options as checks, renderer
+from .. import _renderer as renderer
+from . import gym, options as checks
 
 Floats = npt.NDArray[np.float64]
 OBSERVATIONS = ("state", "rgb")

@@ -16,7 +16,8 @@ import numpy.typing as npt
 
 import incise
 
-from . import gym, options as checks, renderer
+from .. import _renderer as renderer
+from . import gym, options as checks
 from .base import CuttingEnv, Floats, World, image_space, masses_of, part_labels, strained
 
 MM = 0.001

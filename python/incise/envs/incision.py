@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 import incise
 
-from . import gym, line, options as checks, renderer
+from .. import _renderer as renderer
+from . import gym, line, options as checks
 from .base import CuttingEnv, Floats, World, image_space, masses_of, part_labels
 from .target import Target
 

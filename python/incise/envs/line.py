@@ -32,13 +32,6 @@ def distances(points: Floats, line: Floats) -> Floats:
     return nearest
 
 
-def cross(a: Floats, b: Floats) -> Floats:
-    """Return the cross products of vectors (..., 3), as np.cross, which is slow for few."""
-    product: Floats = (a[..., [1, 2, 0]] * b[..., [2, 0, 1]]
-                       - a[..., [2, 0, 1]] * b[..., [1, 2, 0]])
-    return product
-
-
 def is_inside(points: Floats, corners: Floats) -> npt.NDArray[np.bool_]:
     """Return whether points (N, 2) lie in the polygon with these corners (M, 2). Shape (N,)."""
     x, y = points[:, 0][:, None], points[:, 1][:, None]

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from .._renderer import cross
 from . import line
 
 Floats = npt.NDArray[np.float64]
@@ -15,9 +16,9 @@ Floats = npt.NDArray[np.float64]
 def are_near(points: Floats, triangles: Floats, reach: float) -> npt.NDArray[np.bool_]:
     """Return which points (N, 3) are within reach, m, of some of the triangles (T, 3, 3)."""
     sides = np.roll(triangles, -1, axis=1) - triangles
-    normals = line.cross(sides[:, 0], sides[:, 1])
+    normals = cross(sides[:, 0], sides[:, 1])
     normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-30)[:, None]
-    inwards = line.cross(normals[:, None], sides)
+    inwards = cross(normals[:, None], sides)
     offset = points[:, None, None] - triangles
     share = np.einsum("ntec,tec->nte", offset, sides)
     share /= np.maximum(np.einsum("tec,tec->te", sides, sides), 1e-30)
@@ -85,7 +86,7 @@ class Target:
                                 np.maximum(self._bottom - middle[is_new, 2], 0.0))
         self._keys, self._away = keys, away
         sides = faces[:, 1:] - faces[:, :1]
-        area = np.linalg.norm(line.cross(sides[:, 0], sides[:, 1]), axis=1)
+        area = np.linalg.norm(cross(sides[:, 0], sides[:, 1]), axis=1)
         self.mean_distance = float(away @ area / max(float(area.sum()), 1e-30))
         self.max_distance = float(away.max())
         self.excess_depth = max(0.0, self._bottom - float(faces[:, :, 2].min()))

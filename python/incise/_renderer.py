@@ -7,10 +7,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from . import line
-
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
+
+
+def cross(a: Floats, b: Floats) -> Floats:
+    """Return the cross products of vectors (..., 3), as np.cross, which is slow for few."""
+    product: Floats = (a[..., [1, 2, 0]] * b[..., [2, 0, 1]]
+                       - a[..., [2, 0, 1]] * b[..., [1, 2, 0]])
+    return product
 
 
 class Camera:
@@ -18,7 +23,7 @@ class Camera:
 
     def __init__(self, position: npt.ArrayLike, target: npt.ArrayLike,
                  shape: tuple[int, int], field_of_view: float = 0.7) -> None:
-        """position, target: shape (3,), m. The picture has z upwards.
+        """position, target: shape (3,), m. The picture has z upwards, or y in a view along z.
 
         shape: height and width, pixels.  field_of_view: vertical, rad.
         """
@@ -28,6 +33,8 @@ class Camera:
         forward = np.asarray(target, float) - self.position
         forward /= np.linalg.norm(forward)
         right = np.cross(forward, [0.0, 0.0, 1.0])
+        if np.linalg.norm(right) < 1e-6:
+            right = np.cross(forward, [0.0, 1.0, 0.0])
         right /= np.linalg.norm(right)
         self.axes = np.stack([right, np.cross(forward, right), forward])
 
@@ -138,19 +145,19 @@ def ribbons(camera: Camera, segments: Floats, width: float) -> Floats:
     return shape[:, [[0, i, i + 1] for i in range(1, 7)]].reshape(-1, 3, 3)
 
 
-def draw(camera: Camera, points: Floats, triangles: Integers, colors: Floats,
-         lines: Sequence[Lines] = ()) -> npt.NDArray[np.uint8]:
-    """Return a picture, uint8, shape (height, width, 3).
+def trace(camera: Camera, points: Floats, triangles: Integers,
+          lines: Sequence[Lines] = ()) -> tuple[npt.NDArray[np.int32], Floats]:
+    """Return what is in front at each pixel, row by row: its number, and 1 / distance.
+
+    Number 0 is nothing, 1 + t triangle t, and 1 + T + i the lines i.
 
     points: shape (N, 3), m.  triangles: rows of points, shape (T, 3); both sides are seen.
-    colors: one a triangle, shape (T, 3), 0 to 255.
     lines: on surfaces, each over those before it. Triangles that are 1 % nearer hide them. A
         segment of no length is a dot.
     """
     height, width = camera.shape
     seen = camera.project(points)
     seen[:, 2] = 1.0 / seen[:, 2]
-    # Of what is in front at each pixel: 1 / distance, and the row of its colour.
     front = np.zeros(height * width)
     owner = np.zeros(height * width, np.int32)
     for triangle, pixel, near in pixels(seen[triangles], camera.shape):
@@ -161,18 +168,39 @@ def draw(camera: Camera, points: Floats, triangles: Integers, colors: Floats,
             front[pixel], owner[pixel] = near, triangle
             left = np.flatnonzero(near > front[pixel])
             triangle, pixel, near = triangle[left], pixel[left], near[left]
+    of_lines = front.copy()
+    for i, (segments, line_width, _) in enumerate(lines):
+        for _, pixel, near in pixels(ribbons(camera, segments, line_width), camera.shape):
+            is_seen = LINE_REACH * near >= front[pixel]
+            owner[pixel[is_seen]] = 1 + len(triangles) + i
+            of_lines[pixel[is_seen]] = near[is_seen]
+    return owner, of_lines
+
+
+def shade(owner: npt.NDArray[np.int32], points: Floats, triangles: Integers, colors: Floats,
+          lines: Sequence[Lines] = ()) -> npt.NDArray[np.uint8]:
+    """Return the colours of what trace() has found, uint8, shape (len(owner), 3).
+
+    colors: one a triangle, shape (T, 3), 0 to 255.
+    """
     corners = points[triangles]
-    normals = line.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normals, axis=1)
     facing = np.abs(normals @ LIGHT) / np.maximum(length, 1e-30)
     paint = np.empty((1 + len(triangles) + len(lines), 3), np.uint8)
     paint[0] = BACKGROUND
     paint[1:1 + len(triangles)] = np.minimum(colors * (0.45 + 0.55 * facing)[:, None], 255)
-    for i, (segments, line_width, color) in enumerate(lines):
+    for i, (_, _, color) in enumerate(lines):
         paint[1 + len(triangles) + i] = color
-        for _, pixel, near in pixels(ribbons(camera, segments, line_width), camera.shape):
-            owner[pixel[LINE_REACH * near >= front[pixel]]] = 1 + len(triangles) + i
-    return paint[owner].reshape(height, width, 3)
+    shaded: npt.NDArray[np.uint8] = paint[owner]
+    return shaded
+
+
+def draw(camera: Camera, points: Floats, triangles: Integers, colors: Floats,
+         lines: Sequence[Lines] = ()) -> npt.NDArray[np.uint8]:
+    """Return a picture, uint8, shape (height, width, 3): see trace() and shade()."""
+    owner, _ = trace(camera, points, triangles, lines)
+    return shade(owner, points, triangles, colors, lines).reshape(*camera.shape, 3)
 
 
 def rod(start: npt.ArrayLike, end: npt.ArrayLike, radius: float,
