@@ -37,6 +37,7 @@ Vec3 point(const Numbers& numbers, std::size_t first) {
 struct Reader {
     const CutToolArgument& argument;
     const CutToolOption& option;
+    double snap;
 
     [[noreturn]] void fail(const std::string& wrong) const {
         throw InputError(argument.option + ": " + scenario::in_quotes(argument.text) + wrong);
@@ -49,15 +50,15 @@ struct Reader {
         return r;
     }
 
-    app::PlaneCut plane() const {
+    cutting::PlaneCut plane() const {
         const Numbers x = numbers();
         const Vec3 normal = point(x, 3);
         if (normal.isZero(0.0)) fail(" has a normal of zero length; give the plane a direction");
-        return {point(x, 0), normal};
+        return {point(x, 0), normal, snap};
     }
 
-    app::SweepCut sweep() const {
-        app::SweepCut sweep;
+    cutting::Sweep sweep() const {
+        cutting::Sweep sweep{{}, snap};
         for (const auto text : parts_of(argument.text, '|')) {
             const auto name = "pose " + std::to_string(sweep.poses.size() + 1);
             auto edge = parse_points(argument.option + ": " + name, text);
@@ -75,12 +76,12 @@ struct Reader {
         return sweep;
     }
 
-    app::ShapeRemoval sphere() const {
+    cutting::Removal sphere() const {
         const Numbers x = numbers();
         return {cutting::Sphere{radius(x[3])}, point(x, 0)};
     }
 
-    app::ShapeRemoval box() const {
+    cutting::Removal box() const {
         const Numbers x = numbers();
         for (std::size_t c = 0; c < 3; ++c)
             if (!(x[c] < x[c + 3]))
@@ -90,7 +91,7 @@ struct Reader {
         return {cutting::Cuboid{high - low}, 0.5 * (low + high)};
     }
 
-    app::ShapeRemoval capsule() const {
+    cutting::Removal capsule() const {
         const Numbers x = numbers();
         const Vec3 from = point(x, 0), to = point(x, 3), middle = 0.5 * (from + to);
         return {cutting::Capsule{from - middle, to - middle, radius(x[6])}, middle};
@@ -101,10 +102,10 @@ struct Reader {
 
 std::span<const CutToolOption> cut_tool_options() { return tool_options; }
 
-ParsedCutTool parse_cut_tool(const CutToolArgument& argument) {
+ParsedCutTool parse_cut_tool(const CutToolArgument& argument, double snap) {
     std::size_t row = 0;
     while (argument.option != tool_options.at(row).name) ++row;
-    const Reader reader{argument, tool_options[row]};
+    const Reader reader{argument, tool_options[row], snap};
     ParsedCutTool parsed;
     switch (static_cast<Kind>(row)) {
         case Kind::plane:
@@ -128,7 +129,7 @@ ParsedCutTool parse_cut_tool(const CutToolArgument& argument) {
                 file.warnings.push_back(defect);
             for (const auto& warning : file.warnings)
                 parsed.warnings.push_back(prefixed(argument.text + ": ", warning));
-            parsed.tool.kind = app::SurfaceCut{std::move(file.surface)};
+            parsed.tool.kind = cutting::SurfaceCut{std::move(file.surface), snap};
         }
     }
     // The values of sweeps can be too long for messages.

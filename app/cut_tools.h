@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "incise/app/geometric_cut.h"
 #include "incise/app/verbs.h"
+#include "incise/cutting/rest/cut_at_rest.h"
 
 namespace incise::app {
 
@@ -22,12 +22,13 @@ std::span<const CutToolOption> cut_tool_options();
 
 /// The result of parse_cut_tool().
 struct ParsedCutTool {
-    app::CutTool tool;
+    cutting::RestTool tool;
     std::vector<std::string> warnings;  ///< about the file of the surface; each names it
 };
 
 /// Parses the value of an option, and reads the file of its surface if it has one.
 /// Throws InputError. For a wrong value the message has the option, its text and the expected form.
-ParsedCutTool parse_cut_tool(const CutToolArgument& argument);
+/// @param snap  of the tool, if it divides elements
+ParsedCutTool parse_cut_tool(const CutToolArgument& argument, double snap);
 
 }  // namespace incise::app

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "incise/app/cut_tools.h"
-#include "incise/app/geometric_cut.h"
 #include "incise/app/messages.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
@@ -20,7 +19,6 @@
 #include "incise/scenario/diagnostics.h"
 #include "incise/scenario/remedies.h"
 #include "incise/scenario/table_reader.h"
-#include "incise/scenario/tool_build.h"
 
 namespace incise::app {
 
@@ -33,7 +31,7 @@ constexpr std::string_view modes[] = {"split", "separate"};
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
 struct Job {
-    std::vector<app::CutTool> tools;
+    std::vector<cutting::RestTool> tools;
     std::optional<cutting::CutMode> mode;
     double snap = cutting::default_snap;
     std::vector<std::string> warnings;
@@ -83,7 +81,7 @@ Job parse(const CutOptions& options) {
         throw InputError("no tool is given; use one or more of " + scenario::list_of(names));
     }
     for (const auto& argument : options.tools) {
-        auto parsed = parse_cut_tool(argument);
+        auto parsed = parse_cut_tool(argument, job.snap);
         job.tools.push_back(std::move(parsed.tool));
         job.warnings.insert(job.warnings.end(), parsed.warnings.begin(), parsed.warnings.end());
     }
@@ -94,7 +92,7 @@ struct Result {
     topology::MeshData mesh;
     cutting::CutMode mode;
     double snap;
-    app::GeometricCutReport report;
+    cutting::RestCutReport report;
     std::vector<std::string> warnings;
 };
 
@@ -104,15 +102,13 @@ Result carry_out(const CutOptions& options) {
     auto file = read_input(options.mesh, {.region_array = options.region_array});
     try {
         auto built = topology::Mesh::build(file.mesh, scenario::weld_advice());
-        const auto mode = job.mode.value_or(scenario::usual_mode(built.mesh));
-        auto report = app::geometric_cut(built.mesh, job.tools, {mode, job.snap});
+        const auto mode = job.mode.value_or(cutting::usual_mode(built.mesh));
+        auto report = cutting::cut_at_rest(built.mesh, job.tools, mode);
         for (const auto* warnings : {&file.warnings, &built.warnings, &report.warnings})
             for (const auto& warning : *warnings) job.warnings.push_back(prefixed(prefix, warning));
-        auto cut = topology::to_mesh_data(built.mesh, built.mesh.rest_positions());
-        cut.carriers = std::move(report.carriers);
+        topology::MeshData cut = std::move(report.mesh);
         if (const auto loss = io::loss_in_format(options.out, cut)) job.warnings.push_back(*loss);
-        cut.points_may_coincide =
-            file.mesh.points_may_coincide || report.total.nodes_duplicated > 0;
+        cut.points_may_coincide |= file.mesh.points_may_coincide;
         return {std::move(cut), mode, job.snap, std::move(report), std::move(job.warnings)};
     } catch (const cutting::UndividableElement& error) {
         throw InputError(prefixed(prefix, error.what()) + "; use --mode separate");
@@ -131,7 +127,7 @@ ordered_json or_null(const std::optional<double>& value) {
     return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
-ordered_json distance_json(const std::optional<app::CutCounts::Distance>& distance,
+ordered_json distance_json(const std::optional<cutting::CutCounts::Distance>& distance,
                            double mean_edge_length) {
     if (!distance) return {{"max", nullptr}, {"relative", nullptr}, {"nodes", nullptr}};
     return {{"max", distance->faces},
@@ -139,7 +135,7 @@ ordered_json distance_json(const std::optional<app::CutCounts::Distance>& distan
             {"nodes", distance->nodes}};
 }
 
-void put_counts(ordered_json& json, const app::CutCounts& counts, double mean_edge_length) {
+void put_counts(ordered_json& json, const cutting::CutCounts& counts, double mean_edge_length) {
     json["crossed"] = counts.elements_crossed;
     json["snapped"] = counts.nodes_snapped;
     json["elements_added"] = counts.elements_added;
@@ -189,7 +185,7 @@ ordered_json as_json(const CutOptions& options, const Result& result) {
     return json;
 }
 
-void print_counts(const app::CutCounts& counts, double mean_edge_length) {
+void print_counts(const cutting::CutCounts& counts, double mean_edge_length) {
     std::printf("elements crossed  %zu\n", counts.elements_crossed);
     std::printf("elements added    %zu\n", counts.elements_added);
     std::printf("elements removed  %zu\n", counts.elements_removed);

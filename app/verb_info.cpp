@@ -6,12 +6,12 @@
 #include <numbers>
 #include <optional>
 
-#include "incise/app/body_measures.h"
 #include "incise/app/image_info.h"
 #include "incise/app/messages.h"
 #include "incise/app/surface_info.h"
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
+#include "incise/cutting/rest/body_measures.h"
 #include "incise/io/image/label_image.h"
 #include "incise/io/surface/surface_reader.h"
 #include "incise/scenario/remedies.h"
@@ -26,7 +26,7 @@ struct MeshInfo {
     std::size_t num_points = 0;
     int num_components = 0;
     topology::MeshMetrics metrics;
-    std::optional<FragmentCounts> fragments;  ///< of a body that was cut
+    std::optional<cutting::FragmentCounts> fragments;  ///< of a body that was cut
     std::vector<std::string> warnings;
 
     double min_dihedral_degrees() const {
@@ -46,7 +46,7 @@ MeshInfo look_at(const InfoOptions& options) {
         info.num_components = topology::components(built.mesh).count;
         info.metrics = topology::measure(file.mesh);
         if (!file.mesh.carriers.is_empty())
-            info.fragments = counts_of(built.mesh, fragments::FragmentMesh(built.mesh));
+            info.fragments = cutting::counts_of(built.mesh, fragments::FragmentMesh(built.mesh));
     } catch (const InputError& error) {
         throw InputError(prefixed(options.mesh.string() + ": ", error.what()));
     }

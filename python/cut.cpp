@@ -5,14 +5,13 @@
 #include <optional>
 #include <utility>
 
-#include "incise/app/geometric_cut.h"
 #include "incise/base/error.h"
 #include "incise/cutting/exact/undividable.h"
+#include "incise/cutting/rest/cut_at_rest.h"
 #include "incise/cutting/surfaces/surface_check.h"
 #include "incise/io/surface/surface_reader.h"
 #include "incise/python/handle.h"
 #include "incise/python/mesh.h"
-#include "incise/scenario/tool_build.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::python {
@@ -24,7 +23,7 @@ using topology::MeshData;
 /// The result of cut().
 struct CutResult {
     PyMesh mesh;
-    app::GeometricCutReport report;
+    cutting::RestCutReport report;
 };
 
 Vec3 part_of(const py::handle& pair, std::size_t index, const std::string& name) {
@@ -84,7 +83,7 @@ topology::SurfaceData surface_from(const py::object& given, const std::string& n
     return surface;
 }
 
-app::SweepCut sweep_from(const py::object& given, const std::string& name) {
+cutting::Sweep sweep_from(const py::object& given, const std::string& name, double snap) {
     const auto poses =
         py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
     if (!poses || poses.ndim() != 3 || poses.shape(0) < 2 || poses.shape(1) < 2 ||
@@ -94,7 +93,7 @@ app::SweepCut sweep_from(const py::object& given, const std::string& name) {
                          " must have the shape (P, K, 3): at least two poses of the edge of at "
                          "least two points");
     }
-    app::SweepCut sweep;
+    cutting::Sweep sweep{{}, snap};
     for (py::ssize_t p = 0; p < poses.shape(0); ++p) {
         sweep.poses.emplace_back();
         for (py::ssize_t k = 0; k < poses.shape(1); ++k)
@@ -104,34 +103,35 @@ app::SweepCut sweep_from(const py::object& given, const std::string& name) {
     return sweep;
 }
 
-std::vector<app::CutTool> tools_from(const py::sequence& planes, const py::sequence& surfaces,
-                                     const py::sequence& sweeps, const py::sequence& spheres,
-                                     const py::sequence& boxes, const py::sequence& capsules) {
-    std::vector<app::CutTool> tools;
+std::vector<cutting::RestTool> tools_from(const py::sequence& planes, const py::sequence& surfaces,
+                                          const py::sequence& sweeps, const py::sequence& spheres,
+                                          const py::sequence& boxes, const py::sequence& capsules,
+                                          double snap) {
+    std::vector<cutting::RestTool> tools;
     const auto for_each = [&](const py::sequence& list, const std::string& kind, auto make) {
         for (std::size_t i = 0; i < list.size(); ++i) {
             const std::string name = kind + "[" + std::to_string(i) + "]";
             tools.push_back({name, make(py::object(list[i]), name)});
         }
     };
-    using Kind = decltype(app::CutTool::kind);
-    for_each(planes, "planes", [](const py::object& plane, const std::string& name) -> Kind {
+    using Kind = decltype(cutting::RestTool::kind);
+    for_each(planes, "planes", [&](const py::object& plane, const std::string& name) -> Kind {
         require_parts(plane, 2, name, "a pair of a point and a normal");
         const Vec3 normal = finite(part_of(plane, 1, name), name);
         if (normal.isZero(0.0)) throw InputError(name + " has a normal of zero length");
-        return app::PlaneCut{finite(part_of(plane, 0, name), name), normal};
+        return cutting::PlaneCut{finite(part_of(plane, 0, name), name), normal, snap};
     });
-    for_each(surfaces, "surfaces", [](const py::object& surface, const std::string& name) -> Kind {
-        return app::SurfaceCut{surface_from(surface, name)};
+    for_each(surfaces, "surfaces", [&](const py::object& surface, const std::string& name) -> Kind {
+        return cutting::SurfaceCut{surface_from(surface, name), snap};
     });
-    for_each(sweeps, "sweeps", [](const py::object& sweep, const std::string& name) -> Kind {
-        return sweep_from(sweep, name);
+    for_each(sweeps, "sweeps", [&](const py::object& sweep, const std::string& name) -> Kind {
+        return sweep_from(sweep, name, snap);
     });
     for_each(
         spheres, "remove_spheres", [](const py::object& ball, const std::string& name) -> Kind {
             require_parts(ball, 2, name, "a pair of a centre and a radius");
-            return app::ShapeRemoval{cutting::Sphere{number_from(ball, 1, name + ": the radius")},
-                                     finite(part_of(ball, 0, name), name)};
+            return cutting::Removal{cutting::Sphere{number_from(ball, 1, name + ": the radius")},
+                                    finite(part_of(ball, 0, name), name)};
         });
     for_each(boxes, "remove_boxes", [](const py::object& corners, const std::string& name) -> Kind {
         require_parts(corners, 2, name, "a pair of the lower and the upper corner");
@@ -139,7 +139,7 @@ std::vector<app::CutTool> tools_from(const py::sequence& planes, const py::seque
         const Vec3 high = finite(part_of(corners, 1, name), name);
         if (!(low.array() < high.array()).all())
             throw InputError(name + ": the lower corner comes first");
-        return app::ShapeRemoval{cutting::Cuboid{high - low}, 0.5 * (low + high)};
+        return cutting::Removal{cutting::Cuboid{high - low}, 0.5 * (low + high)};
     });
     for_each(capsules, "remove_capsules",
              [](const py::object& capsule, const std::string& name) -> Kind {
@@ -147,7 +147,7 @@ std::vector<app::CutTool> tools_from(const py::sequence& planes, const py::seque
                  const Vec3 from = finite(part_of(capsule, 0, name), name);
                  const Vec3 to = finite(part_of(capsule, 1, name), name);
                  const Vec3 middle = 0.5 * (from + to);
-                 return app::ShapeRemoval{
+                 return cutting::Removal{
                      cutting::Capsule{from - middle, to - middle,
                                       number_from(capsule, 2, name + ": the radius")},
                      middle};
@@ -166,8 +166,8 @@ CutResult cut(const std::shared_ptr<PyMesh>& given, const py::sequence& planes,
     if (mode && *mode != "split" && *mode != "separate")
         throw InputError("mode is '" + *mode + "': it must be 'split' or 'separate'");
     if (!(snap >= 0.0 && snap <= 0.5)) throw InputError("snap must be from 0 to 0.5");
-    const std::vector<app::CutTool> tools =
-        tools_from(planes, surfaces, sweeps, spheres, boxes, capsules);
+    const std::vector<cutting::RestTool> tools =
+        tools_from(planes, surfaces, sweeps, spheres, boxes, capsules, snap);
     if (tools.empty())
         throw InputError(
             "no tool is given: use planes, surfaces, sweeps, remove_spheres, "
@@ -178,15 +178,13 @@ CutResult cut(const std::shared_ptr<PyMesh>& given, const py::sequence& planes,
         const Unlocked unlocked;
         try {
             topology::BuiltMesh built = topology::Mesh::build(*mesh.data);
-            const auto usual = scenario::usual_mode(built.mesh);
+            const auto usual = cutting::usual_mode(built.mesh);
             const auto chosen = !mode              ? usual
                                 : *mode == "split" ? cutting::CutMode::split
                                                    : cutting::CutMode::separate;
-            result.report = app::geometric_cut(built.mesh, tools, {chosen, snap});
-            MeshData cut = topology::to_mesh_data(built.mesh, built.mesh.rest_positions());
-            cut.carriers = std::move(result.report.carriers);
-            cut.points_may_coincide =
-                mesh.data->points_may_coincide || result.report.total.nodes_duplicated > 0;
+            result.report = cutting::cut_at_rest(built.mesh, tools, chosen);
+            MeshData cut = std::move(result.report.mesh);
+            cut.points_may_coincide |= mesh.data->points_may_coincide;
             result.mesh = {std::make_shared<const MeshData>(std::move(cut)),
                            result.report.warnings};
         } catch (const cutting::UndividableElement& error) {
@@ -198,11 +196,11 @@ CutResult cut(const std::shared_ptr<PyMesh>& given, const py::sequence& planes,
 }
 
 py::dict report_of(const CutResult& result) {
-    const app::CutCounts& total = result.report.total;
+    const cutting::CutCounts& total = result.report.total;
     py::dict report;
     report["pieces"] = [&] {
         py::list pieces;
-        for (const app::Piece& piece : result.report.pieces) {
+        for (const cutting::Piece& piece : result.report.pieces) {
             py::dict row;
             row["volume"] = piece.volume;
             row["elements"] = piece.elements;

@@ -38,16 +38,10 @@ Box swept_box(const ToolPath& path, std::span<const Vec3> points) {
 
 }  // namespace
 
-CutMode usual_mode(const topology::Mesh& mesh) {
-    for (const CellId e : mesh.elements())
-        if (mesh.kind(e) != topology::CellKind::tetrahedron) return CutMode::separate;
-    return CutMode::split;
-}
-
 ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh) {
     // A tool of an unknown kind has been read as several kinds.
     if (auto* blade = std::get_if<cutting::Blade>(&spec.shape); blade && spec.has_usual_mode) {
-        blade->mode = usual_mode(mesh);
+        blade->mode = cutting::usual_mode(mesh);
         spec.has_usual_mode = false;
         // A mode that was chosen has been judged before.
         if (blade->toughness > 0.0 && blade->mode == CutMode::separate)

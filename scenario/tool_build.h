@@ -15,11 +15,7 @@
 
 namespace incise::scenario {
 
-/// Returns the default mode of blades: CutMode::split, or CutMode::separate if the mesh has
-/// elements other than tetrahedra. Cost: O(#elements).
-CutMode usual_mode(const topology::Mesh& mesh);
-
-/// Returns the tool with a mode. A blade without a mode gets usual_mode() of the mesh.
+/// Returns the tool with a mode. A blade without a mode gets cutting::usual_mode() of the mesh.
 /// Throws InputError if the tool divides elements and the mesh has no tetrahedra.
 ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh);
 

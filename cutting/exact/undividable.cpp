@@ -14,6 +14,12 @@ namespace incise::cutting {
 using topology::CellKind;
 using topology::Mesh;
 
+CutMode usual_mode(const Mesh& mesh) {
+    for (const CellId e : mesh.elements())
+        if (mesh.kind(e) != CellKind::tetrahedron) return CutMode::separate;
+    return CutMode::split;
+}
+
 void refuse_to_divide(const Mesh& mesh, CellId e) {
     throw UndividableElement("element " + std::to_string(mesh.label(e)) + " is a " +
                                  topology::traits(mesh.kind(e)).name +

@@ -9,6 +9,7 @@
 
 #include "incise/base/error.h"
 #include "incise/cutting/surfaces/cut_surface.h"
+#include "incise/cutting/tools/tool.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::cutting {
@@ -19,6 +20,10 @@ struct UndividableElement : InputError {
     UndividableElement(const std::string& text, CellId which) : InputError(text), element(which) {}
     CellId element;
 };
+
+/// Returns the mode of blades for which nothing else is said: CutMode::split, or CutMode::separate
+/// if the mesh has elements that cannot be divided. Cost: O(#elements).
+CutMode usual_mode(const topology::Mesh& mesh);
 
 /// Throws UndividableElement for an element.
 [[noreturn]] void refuse_to_divide(const topology::Mesh& mesh, CellId e);

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "incise/app/geometric_cut.h"
 #include "incise/base/disjoint_set.h"
+#include "incise/cutting/rest/cut_at_rest.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/geometry.h"
@@ -18,7 +18,7 @@
 #include "support/num_cases.h"
 #include "support/plane_section.h"
 
-namespace incise::app {
+namespace incise::cutting {
 namespace {
 
 using topology::Mesh;
@@ -100,8 +100,8 @@ TEST(SmoothCut, AlongAPlanePartsEveryBodyAndKeepsTheStep) {
             SCOPED_TRACE(body.name + ", trial " + std::to_string(trial));
             const PlaneCut plane = random_plane(box_of(whole), random);
             Mesh mesh = Mesh::build(body.data).mesh;
-            const CutTool tool{"plane", plane};
-            const GeometricCutReport report = geometric_cut(mesh, {&tool, 1}, {});
+            const RestTool tool{"plane", plane};
+            const RestCutReport report = cut_at_rest(mesh, {&tool, 1}, CutMode::split);
             EXPECT_EQ(report.pieces.size(), pieces_beside(whole, plane));
             ASSERT_TRUE(report.total.surface_distance && report.total.mean_angle);
             EXPECT_LE(report.total.surface_distance->nodes,
@@ -120,10 +120,10 @@ TEST(SmoothCut, AlongEightPlanesKeepsTheStep) {
         for (std::size_t trial = 0; trial < test::num_cases(5); ++trial) {
             SCOPED_TRACE(body.name + ", trial " + std::to_string(trial));
             Mesh mesh = Mesh::build(body.data).mesh;
-            std::vector<CutTool> tools;
+            std::vector<RestTool> tools;
             for (int i = 0; i < 8; ++i)
                 tools.push_back({"plane", random_plane(box_of(mesh), random)});
-            const GeometricCutReport report = geometric_cut(mesh, tools, {});
+            const RestCutReport report = cut_at_rest(mesh, tools, CutMode::split);
             EXPECT_GE(report.pieces.size(), 8u);
             EXPECT_LE(report.volume_error(), 1e-12);
             EXPECT_GE(*report.stable_step_ratio(), body.step_after_eight);
@@ -186,13 +186,13 @@ TEST(SmoothCut, AlongCurvedSurfacesKeepsTheStep) {
             Mesh mesh = Mesh::build(body.data).mesh;
             const auto box = box_of(mesh);
             const bool is_sphere = trial % 2 == 0;
-            const CutTool tool =
+            const RestTool tool =
                 is_sphere
-                    ? CutTool{"sphere",
-                              sphere(box.center() + random.vector(0.1).cwiseProduct(box.sizes()),
-                                     0.3 * box.sizes().minCoeff())}
-                    : CutTool{"sheet", waved_sheet(box, random)};
-            const GeometricCutReport report = geometric_cut(mesh, {&tool, 1}, {});
+                    ? RestTool{"sphere",
+                               sphere(box.center() + random.vector(0.1).cwiseProduct(box.sizes()),
+                                      0.3 * box.sizes().minCoeff())}
+                    : RestTool{"sheet", waved_sheet(box, random)};
+            const RestCutReport report = cut_at_rest(mesh, {&tool, 1}, CutMode::split);
             EXPECT_GE(report.pieces.size(), 2u);
             EXPECT_LE(report.volume_error(), 1e-12);
             ASSERT_TRUE(report.total.surface_distance);
@@ -204,4 +204,4 @@ TEST(SmoothCut, AlongCurvedSurfacesKeepsTheStep) {
 }
 
 }  // namespace
-}  // namespace incise::app
+}  // namespace incise::cutting

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/app/body_measures.h"
+#include "incise/cutting/rest/body_measures.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "incise/topology/mesh_metrics.h"
 
-namespace incise::app {
+namespace incise::cutting {
 
 using fragments::FragmentMesh;
 using topology::CellKind;
@@ -105,4 +105,4 @@ std::vector<Piece> pieces_of(const Mesh& mesh) {
     return pieces;
 }
 
-}  // namespace incise::app
+}  // namespace incise::cutting

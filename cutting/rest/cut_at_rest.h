@@ -1,4 +1,4 @@
-// Cuts of a mesh at rest, one tool after the other and without dynamics, for `incise cut`.
+// Cuts of a body at rest, one tool after the other and without dynamics.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -9,49 +9,33 @@
 #include <variant>
 #include <vector>
 
-#include "incise/app/body_measures.h"
 #include "incise/base/types.h"
-#include "incise/cutting/exact/splitter.h"
-#include "incise/cutting/tools/carver.h"
+#include "incise/cutting/rest/body_measures.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/surface_data.h"
+#include "incise/topology/mesh_data.h"
 
-namespace incise::app {
+namespace incise::cutting {
 
-using cutting::CutMode;
-
-/// A plane. All tools have the unit of length of the mesh, m.
-struct PlaneCut {
-    Vec3 point, normal;  ///< the normal has any length above zero
-};
-/// A triangulated surface.
-struct SurfaceCut {
-    topology::SurfaceData surface;
-};
 /// The edge of a blade, a polyline, whose points move along straight lines from pose to pose. From
 /// one pose to the next, each segment sweeps two triangles. The triangles share the diagonal from
 /// the first point of the segment before the motion to the second point after it.
-struct SweepCut {
+struct Sweep {
     /// At least two poses. All have the same number of points, at least two.
     std::vector<std::vector<Vec3>> poses;
+    double snap = default_snap;  ///< see SplitOptions
 };
 /// Removal of the elements whose centres a shape covers.
-struct ShapeRemoval {
-    cutting::CarverShape shape;
-    Vec3 at = Vec3::Zero();  ///< position of the origin of the shape
+struct Removal {
+    CarverShape shape;
+    Vec3 at = Vec3::Zero();  ///< position of the origin of the shape, m
 };
 
-/// A tool with its name.
-struct CutTool {
+/// A tool that cuts a body at rest, with its name. The points of a sweep and of the tools at once
+/// are in the frame of the mesh, m.
+struct RestTool {
     std::string name;  ///< for reports and messages
-    std::variant<PlaneCut, SurfaceCut, SweepCut, ShapeRemoval> kind;
-};
-
-/// Options that all tools share.
-struct GeometricCutOptions {
-    CutMode mode = CutMode::split;        ///< split is for tetrahedra only
-    double snap = cutting::default_snap;  ///< for CutMode::split; see cutting::SplitOptions
+    std::variant<PlaneCut, SurfaceCut, Sweep, Removal> kind;
 };
 
 /// Counts of the changes by one tool, or by all tools together.
@@ -87,13 +71,15 @@ struct ToolReport {
     int pieces = 0;  ///< connected components of the body after the tool
 };
 
-/// The result of geometric_cut().
-struct GeometricCutReport {
+/// What cut_at_rest() has done.
+struct RestCutReport {
     BodyMeasures before, after;
     std::vector<Piece> pieces;  ///< largest volume first
     CutCounts total;
     std::vector<ToolReport> tools;
-    topology::Carriers carriers;        ///< of the mesh after the cuts, as fragments::carriers_of()
+    /// The body after the cuts, with its carriers: fragments::carriers_of(). Its points may
+    /// coincide if nodes were duplicated.
+    topology::MeshData mesh;
     std::vector<std::string> warnings;  ///< one sentence for each tool that cut nothing
 
     /// Returns |volume after + volume removed - volume before| / volume before.
@@ -108,20 +94,18 @@ struct GeometricCutReport {
     std::optional<double> stable_step_ratio() const;
 };
 
-/// Applies the tools in their order to the body at rest. Planes, surfaces and sweeps cut the body.
+/// Applies the tools in their order to a body at rest. Planes, surfaces and sweeps cut the body.
 /// Shapes remove the elements whose centres they cover.
 ///
-/// With CutMode::split, tools divide elements by cutting::Cutter::split(), with the tolerance
-/// `snap`. With CutMode::separate, a sweep opens cutting::faces_to_open(). Planes and surfaces
-/// open the faces between elements whose centres are on different sides. Two points are on
-/// different sides of a surface if the straight line between them crosses it an odd number of
-/// times.
+/// With CutMode::split, tools divide elements by Cutter::split(), with their snap. With
+/// CutMode::separate, a sweep opens faces_to_open(). Planes and surfaces open the faces between
+/// elements whose centres are on different sides. Two points are on different sides of a surface if
+/// the straight line between them crosses it an odd number of times.
 ///
 /// Throws InputError with the name of the tool if an element to be divided is no tetrahedron, or if
 /// no element of the body is left. The mesh then has the changes by the tools before it, and the
 /// removal of the last element.
 /// Cost: some microseconds for each element and tool.
-GeometricCutReport geometric_cut(topology::Mesh& mesh, std::span<const CutTool> tools,
-                                 const GeometricCutOptions& options);
+RestCutReport cut_at_rest(topology::Mesh& mesh, std::span<const RestTool> tools, CutMode mode);
 
-}  // namespace incise::app
+}  // namespace incise::cutting

@@ -1,22 +1,22 @@
 // Cuts at rest: what is reported is what happened to the mesh.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/app/geometric_cut.h"
+#include "incise/cutting/rest/cut_at_rest.h"
 
 #include <gtest/gtest.h>
 
 #include "incise/base/error.h"
+#include "incise/cutting/exact/undividable.h"
 #include "incise/cutting/surfaces/plane.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
-#include "incise/scenario/tool_build.h"
 #include "incise/topology/validate.h"
 #include "support/mesh_families.h"
 
-namespace incise::app {
+namespace incise::cutting {
 namespace {
 
 using topology::Mesh;
 
-constexpr int num_seeds = 6;
+constexpr int num_rest_seeds = 6;
 
 Eigen::AlignedBox3d box_of(const Mesh& mesh) {
     Eigen::AlignedBox3d box;
@@ -29,17 +29,19 @@ Vec3 point_inside(const Eigen::AlignedBox3d& box, test::Random& random) {
     return box.center() + random.vector(0.2).cwiseProduct(box.sizes());
 }
 
-CutTool random_plane(const Eigen::AlignedBox3d& box, test::Random& random) {
+RestTool random_plane(const Eigen::AlignedBox3d& box, test::Random& random,
+                      double snap = default_snap) {
     const Vec3 point = point_inside(box, random);
-    return {"plane", PlaneCut{point, random.vector(1.0)}};
+    return {"plane", PlaneCut{point, random.vector(1.0), snap}};
 }
 
 /// A straight edge that passes right through the body, turning a little, in three poses.
-CutTool random_sweep(const Eigen::AlignedBox3d& box, test::Random& random) {
+RestTool random_sweep(const Eigen::AlignedBox3d& box, test::Random& random,
+                      double snap = default_snap) {
     const double size = box.sizes().norm();
     const Vec3 centre = point_inside(box, random), normal = random.vector(1.0).normalized();
     const Vec3 along = normal.unitOrthogonal(), ahead = normal.cross(along);
-    SweepCut sweep;
+    Sweep sweep{{}, snap};
     for (const double at : {-1.0, 0.1, 1.0}) {
         std::vector<Vec3> edge;
         for (const double end : {-1.0, 1.0})
@@ -49,17 +51,17 @@ CutTool random_sweep(const Eigen::AlignedBox3d& box, test::Random& random) {
     return {"sweep", sweep};
 }
 
-TEST(GeometricCut, OpensFacesOnTheSurfaceWithoutSnap) {
+TEST(CutAtRest, OpensFacesOnTheSurfaceWithoutSnap) {
     for (const auto* family : test::tetrahedral_families())
-        for (int seed = 0; seed < num_seeds; ++seed) {
+        for (int seed = 0; seed < num_rest_seeds; ++seed) {
             SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
             Mesh mesh = Mesh::build(family->data).mesh;
             test::Random random(100 + static_cast<std::uint64_t>(seed));
             const auto box = box_of(mesh);
             // The second runs across what the first one opened.
-            const std::vector<CutTool> tools = {random_plane(box, random),
-                                                random_sweep(box, random)};
-            const auto report = geometric_cut(mesh, tools, {CutMode::split, 0.0});
+            const std::vector<RestTool> tools = {random_plane(box, random, 0.0),
+                                                 random_sweep(box, random, 0.0)};
+            const auto report = cut_at_rest(mesh, tools, CutMode::split);
             EXPECT_TRUE(topology::validate(mesh).empty());
             for (const ToolReport& tool : report.tools) {
                 EXPECT_EQ(tool.counts.faces_opened > 0, tool.counts.surface_distance.has_value());
@@ -75,19 +77,19 @@ TEST(GeometricCut, OpensFacesOnTheSurfaceWithoutSnap) {
         }
 }
 
-TEST(GeometricCut, ReportsWhatHasChanged) {
+TEST(CutAtRest, ReportsWhatHasChanged) {
     for (const auto& family : test::mesh_families())
-        for (int seed = 0; seed < num_seeds; ++seed) {
+        for (int seed = 0; seed < num_rest_seeds; ++seed) {
             SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
             Mesh mesh = Mesh::build(family.data).mesh;
             test::Random random(200 + static_cast<std::uint64_t>(seed));
             const auto box = box_of(mesh);
-            std::vector<CutTool> tools = {random_plane(box, random), random_sweep(box, random)};
+            std::vector<RestTool> tools = {random_plane(box, random), random_sweep(box, random)};
             if (mesh.num_elements() > 10)
-                tools.push_back({"ball", ShapeRemoval{cutting::Sphere{0.2 * box.sizes().norm()},
-                                                      point_inside(box, random)}});
+                tools.push_back(
+                    {"ball", Removal{Sphere{0.2 * box.sizes().norm()}, point_inside(box, random)}});
             const std::size_t elements = mesh.num_elements(), nodes = mesh.num_nodes();
-            const auto report = geometric_cut(mesh, tools, {scenario::usual_mode(mesh)});
+            const auto report = cut_at_rest(mesh, tools, usual_mode(mesh));
             EXPECT_EQ(report.before.elements, elements);
             EXPECT_EQ(report.before.nodes, nodes);
             EXPECT_EQ(report.after.elements, mesh.num_elements());
@@ -112,17 +114,17 @@ TEST(GeometricCut, ReportsWhatHasChanged) {
 }
 
 // Whatever the tolerance: a plane opens no face of a part that it does not cut off.
-TEST(GeometricCut, PartsTheBodyByEveryPlaneThatOpensFaces) {
+TEST(CutAtRest, PartsTheBodyByEveryPlaneThatOpensFaces) {
     std::size_t num_parted = 0;
     for (const auto* family : test::tetrahedral_families())
-        for (int seed = 0; seed < num_seeds; ++seed)
-            for (const double snap : {0.0, cutting::default_snap, 0.5}) {
+        for (int seed = 0; seed < num_rest_seeds; ++seed)
+            for (const double snap : {0.0, default_snap, 0.5}) {
                 SCOPED_TRACE(family->name + ", seed " + std::to_string(seed));
                 Mesh mesh = Mesh::build(family->data).mesh;
                 test::Random random(900 + static_cast<std::uint64_t>(seed));
-                const CutTool tool = random_plane(box_of(mesh), random);
+                const RestTool tool = random_plane(box_of(mesh), random, snap);
                 const int pieces = topology::components(mesh).count;
-                const auto report = geometric_cut(mesh, {&tool, 1}, {CutMode::split, snap});
+                const auto report = cut_at_rest(mesh, {&tool, 1}, CutMode::split);
                 const bool has_parted = topology::components(mesh).count > pieces;
                 EXPECT_EQ(report.total.faces_opened > 0, has_parted);
                 EXPECT_EQ(report.warnings.empty(), has_parted);
@@ -131,17 +133,17 @@ TEST(GeometricCut, PartsTheBodyByEveryPlaneThatOpensFaces) {
     EXPECT_GT(num_parted, 10u);
 }
 
-TEST(GeometricCut, SeparatesElementsWhoseCentresThePlaneParts) {
+TEST(CutAtRest, SeparatesElementsWhoseCentresThePlaneParts) {
     for (const auto& family : test::mesh_families())
-        for (int seed = 0; seed < num_seeds; ++seed) {
+        for (int seed = 0; seed < num_rest_seeds; ++seed) {
             SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
             Mesh mesh = Mesh::build(family.data).mesh;
             test::Random random(300 + static_cast<std::uint64_t>(seed));
-            const CutTool tool = random_plane(box_of(mesh), random);
-            const auto& [point, normal] = std::get<PlaneCut>(tool.kind);
-            const cutting::Plane plane(point, normal);
+            const RestTool tool = random_plane(box_of(mesh), random);
+            const auto& [point, normal, snap] = std::get<PlaneCut>(tool.kind);
+            const Plane plane(point, normal);
             const auto side = [&](CellId e) {
-                return plane.side(cutting::TissueMotion::centre(mesh, e, mesh.rest_positions()));
+                return plane.side(TissueMotion::centre(mesh, e, mesh.rest_positions()));
             };
             std::size_t parted = 0;
             for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
@@ -149,7 +151,7 @@ TEST(GeometricCut, SeparatesElementsWhoseCentresThePlaneParts) {
                     const FaceId face{CellId(i), f}, other = mesh.neighbor(face);
                     parted += face < other && side(face.cell) != side(other.cell);
                 }
-            const auto report = geometric_cut(mesh, {&tool, 1}, {CutMode::separate});
+            const auto report = cut_at_rest(mesh, {&tool, 1}, CutMode::separate);
             EXPECT_EQ(report.total.faces_opened, parted);
             EXPECT_EQ(report.after.elements, report.before.elements);
             EXPECT_EQ(report.warnings.empty(), parted > 0);
@@ -162,17 +164,17 @@ TEST(GeometricCut, SeparatesElementsWhoseCentresThePlaneParts) {
 }
 
 // Also where the blade rests at the end: the last pose is the one before once more.
-TEST(GeometricCut, OfASweepEndsWhereTheBladeDoes) {
-    for (int seed = 0; seed < num_seeds; ++seed) {
+TEST(CutAtRest, OfASweepEndsWhereTheBladeDoes) {
+    for (int seed = 0; seed < num_rest_seeds; ++seed) {
         SCOPED_TRACE(seed);
         Mesh mesh = Mesh::build(test::jittered_cube(4, 0.2, static_cast<std::uint64_t>(seed))).mesh;
         test::Random random(400 + static_cast<std::uint64_t>(seed));
         const double height = random.uniform(0.3, 0.7), end = random.uniform(0.3, 0.7);
-        SweepCut sweep;
+        Sweep sweep{{}, 0.0};
         for (const double x : {-0.5, 0.2, end, end})
             sweep.poses.push_back({{x, -1.0, height}, {x, 2.0, height}});
-        const CutTool tool{"sweep", sweep};
-        const auto report = geometric_cut(mesh, {&tool, 1}, {CutMode::split, 0.0});
+        const RestTool tool{"sweep", sweep};
+        const auto report = cut_at_rest(mesh, {&tool, 1}, CutMode::split);
         EXPECT_TRUE(topology::validate(mesh).empty());
         EXPECT_NEAR(report.total.cut_area, end, 0.5 / 4);  // to half a brick
         EXPECT_EQ(report.pieces.size(), 1u);
@@ -181,11 +183,11 @@ TEST(GeometricCut, OfASweepEndsWhereTheBladeDoes) {
     }
 }
 
-TEST(GeometricCut, NamesTheToolThatFails) {
+TEST(CutAtRest, NamesTheToolThatFails) {
     Mesh mesh = Mesh::build(test::jittered_cube(2, 0.0, 1)).mesh;
-    const CutTool all{"the ball", ShapeRemoval{cutting::Sphere{10.0}, Vec3::Zero()}};
+    const RestTool all{"the ball", Removal{Sphere{10.0}, Vec3::Zero()}};
     try {
-        geometric_cut(mesh, {&all, 1}, {});
+        cut_at_rest(mesh, {&all, 1}, CutMode::split);
         FAIL();
     } catch (const InputError& error) {
         EXPECT_STREQ(error.what(),
@@ -194,4 +196,4 @@ TEST(GeometricCut, NamesTheToolThatFails) {
 }
 
 }  // namespace
-}  // namespace incise::app
+}  // namespace incise::cutting

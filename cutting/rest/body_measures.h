@@ -10,7 +10,7 @@
 #include "incise/fragments/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
-namespace incise::app {
+namespace incise::cutting {
 
 /// A connected component of the body.
 struct Piece {
@@ -50,4 +50,4 @@ BodyMeasures measures_of(const topology::Mesh& mesh, const fragments::FragmentMe
 /// Returns the connected components of a body, the largest volume first. Cost: O(n).
 std::vector<Piece> pieces_of(const topology::Mesh& mesh);
 
-}  // namespace incise::app
+}  // namespace incise::cutting

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/app/geometric_cut.h"
+#include "incise/cutting/rest/cut_at_rest.h"
 
 #include <algorithm>
 #include <array>
@@ -20,9 +20,8 @@
 #include "incise/fragments/fragment_mesh.h"
 #include "incise/topology/geometry.h"
 
-namespace incise::app {
+namespace incise::cutting {
 
-using cutting::TissueMotion;
 using fragments::FragmentMesh;
 using topology::CellKind;
 using topology::Mesh;
@@ -102,7 +101,7 @@ class FacesBefore {
 
 /// Returns the surface that the edge sweeps: two triangles for each segment and motion, as in
 /// cutting/surfaces/space_time.h.
-topology::SurfaceData swept_surface(const SweepCut& sweep) {
+topology::SurfaceData swept_surface(const Sweep& sweep) {
     topology::SurfaceData surface;
     for (std::size_t p = 0; p + 1 < sweep.poses.size(); ++p)
         for (std::size_t s = 0; s + 1 < sweep.poses[p].size(); ++s) {
@@ -118,7 +117,7 @@ topology::SurfaceData swept_surface(const SweepCut& sweep) {
 }
 
 /// Returns the end of the sweep. Its direction is that of the last motion that was not zero.
-cutting::BladeEnd end_of(const SweepCut& sweep) {
+BladeEnd end_of(const Sweep& sweep) {
     const auto& last = sweep.poses.back();
     std::vector<Vec3> motion(last.size(), Vec3::Zero());
     const auto before = std::find_if(sweep.poses.rbegin(), sweep.poses.rend(),
@@ -174,16 +173,12 @@ void add(const CutCounts& counts, CutCounts& total) {
 /// A cutter that applies tools one after the other and counts the changes by each.
 class CountingCutter {
   public:
-    CountingCutter(Mesh& mesh, const GeometricCutOptions& options)
-        : mesh_(mesh),
-          mode_(options.mode),
-          snap_(options.snap),
-          cutter_(mesh, mesh.rest_positions()),
-          fragments_(mesh) {}
+    CountingCutter(Mesh& mesh, CutMode mode)
+        : mesh_(mesh), mode_(mode), cutter_(mesh, mesh.rest_positions()), fragments_(mesh) {}
 
     const FragmentMesh& fragments() const { return fragments_; }
 
-    CutCounts apply(const CutTool& tool) {
+    CutCounts apply(const RestTool& tool) {
         counts_ = {};
         opened_faces_ = {};
         std::visit([&](const auto& kind) { cut(kind); }, tool.kind);
@@ -193,9 +188,9 @@ class CountingCutter {
   private:
     void cut(const PlaneCut& plane) {
         const Vec3 normal = well_scaled(plane.normal), unit = normal.normalized();
-        const cutting::Plane surface(plane.point, normal);
+        const Plane surface(plane.point, normal);
         if (mode_ == CutMode::split)
-            split(surface);
+            split(surface, plane.snap);
         else
             separate(
                 [&](const Vec3& a, const Vec3& b) { return surface.side(a) != surface.side(b); });
@@ -204,10 +199,10 @@ class CountingCutter {
     }
 
     void cut(const SurfaceCut& given) {
-        const cutting::TriangleSurface surface(given.surface);
-        std::vector<cutting::Crossing> crossings;
+        const TriangleSurface surface(given.surface);
+        std::vector<Crossing> crossings;
         if (mode_ == CutMode::split)
-            split(surface);
+            split(surface, given.snap);
         else
             separate([&](const Vec3& a, const Vec3& b) {
                 crossings.clear();
@@ -217,30 +212,30 @@ class CountingCutter {
         measure_distance([&](const Vec3& x) { return surface.distance(x); });
     }
 
-    void cut(const SweepCut& sweep) {
-        const cutting::CutId cut = cutter_.begin_cut(snap_);
+    void cut(const Sweep& sweep) {
+        const CutId cut = cutter_.begin_cut(sweep.snap);
         for (std::size_t p = 0; p + 1 < sweep.poses.size(); ++p) {
             const auto &before = sweep.poses[p], &after = sweep.poses[p + 1];
             const auto rest = mesh_.rest_positions();
             if (mode_ == CutMode::split)
                 split_by([&] { return cutter_.split(cut, mesh_, before, after); });
             else
-                open(cutting::faces_to_open({mesh_, rest, rest}, before, after));
+                open(faces_to_open({mesh_, rest, rest}, before, after));
         }
-        SweepCut followed = sweep;
+        Sweep followed = sweep;
         if (cutter_.is_in_tissue(cut)) {
-            const cutting::BladeEnd end = end_of(sweep);
+            const BladeEnd end = end_of(sweep);
             split_by([&] { return cutter_.end_cut(cut, mesh_, fragments_, end); });
             // The cut may end up to half an element ahead of the edge, on this continuation.
             followed.poses.push_back(end.edge_after(longest_edge(fragments_)));
         }
         cutter_.remove_cut(cut);
         if (counts_.faces_opened == 0) return;
-        const cutting::TriangleSurface surface(swept_surface(followed));
+        const TriangleSurface surface(swept_surface(followed));
         measure_distance([&](const Vec3& x) { return surface.distance(x); });
     }
 
-    void cut(const ShapeRemoval& removal) {
+    void cut(const Removal& removal) {
         const Pose pose{Eigen::Quaterniond::Identity(), removal.at};
         const auto changes = cutter_.carve(mesh_, removal.shape, pose, pose).changes;
         long double removed = 0.0;
@@ -250,16 +245,16 @@ class CountingCutter {
         record_changes(changes);
     }
 
-    void split(const cutting::CutSurface& surface) {
-        split_by([&] { return cutter_.split(mesh_, surface, snap_); });
+    void split(const CutSurface& surface, double snap) {
+        split_by([&] { return cutter_.split(mesh_, surface, snap); });
     }
 
-    /// Makes a split and counts its changes. edit() makes the split and returns a cutting::Split.
+    /// Makes a split and counts its changes. edit() makes the split and returns a Split.
     template <class Edit>
     void split_by(Edit edit) {
         const FacesBefore faces(mesh_);
         const auto start = std::chrono::steady_clock::now();
-        const cutting::Split result = edit();
+        const Split result = edit();
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
         counts_.split_seconds += elapsed.count();
         counts_.elements_crossed += result.report.elements_crossed;
@@ -292,7 +287,7 @@ class CountingCutter {
     }
 
     void open(const std::vector<FaceId>& faces) {
-        const auto changes = cutting::execute({{}, faces}, mesh_);
+        const auto changes = execute({{}, faces}, mesh_);
         std::set<CellId> crossed;
         for (const topology::FacePair& pair : changes.faces_opened) {
             crossed.insert({pair.a.cell, pair.b.cell});
@@ -356,8 +351,7 @@ class CountingCutter {
 
     Mesh& mesh_;
     const CutMode mode_;
-    const double snap_;
-    cutting::Cutter cutter_;
+    Cutter cutter_;
     FragmentMesh fragments_;
     // The counts and faces of the present tool.
     CutCounts counts_;
@@ -368,11 +362,11 @@ class CountingCutter {
 };
 
 /// Returns a warning if the tool cut nothing, because this is rarely intended.
-std::optional<std::string> complaint_about(const CutTool& tool, const CutCounts& counts,
+std::optional<std::string> complaint_about(const RestTool& tool, const CutCounts& counts,
                                            const BodyMeasures& body) {
     std::ostringstream text;
     text.precision(4);
-    if (std::holds_alternative<ShapeRemoval>(tool.kind)) {
+    if (std::holds_alternative<Removal>(tool.kind)) {
         if (counts.elements_removed > 0) return std::nullopt;
         text << "removes nothing, it covers the centre of no element";
     } else {
@@ -407,30 +401,29 @@ std::optional<double> ratio(A a, B b) {
 
 }  // namespace
 
-double GeometricCutReport::volume_error() const {
+double RestCutReport::volume_error() const {
     return std::abs(after.volume + total.volume_removed - before.volume) / before.volume;
 }
 
-std::optional<double> GeometricCutReport::growth() const {
+std::optional<double> RestCutReport::growth() const {
     return ratio(total.elements_added, total.elements_crossed);
 }
 
-std::optional<double> GeometricCutReport::microseconds_per_crossed_element() const {
+std::optional<double> RestCutReport::microseconds_per_crossed_element() const {
     if (total.split_seconds == 0.0) return std::nullopt;
     return ratio(1e6 * total.split_seconds, total.elements_crossed);
 }
 
-std::optional<double> GeometricCutReport::stable_step_ratio() const {
+std::optional<double> RestCutReport::stable_step_ratio() const {
     if (!before.step_length || !after.step_length) return std::nullopt;
     return ratio(*after.step_length, *before.step_length);
 }
 
-GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
-                                 const GeometricCutOptions& options) {
-    GeometricCutReport report;
-    CountingCutter cutter(mesh, options);
+RestCutReport cut_at_rest(Mesh& mesh, std::span<const RestTool> tools, CutMode mode) {
+    RestCutReport report;
+    CountingCutter cutter(mesh, mode);
     report.before = measures_of(mesh, cutter.fragments());
-    for (const CutTool& tool : tools) {
+    for (const RestTool& tool : tools) {
         try {
             const CutCounts counts = cutter.apply(tool);
             if (mesh.num_elements() == 0)
@@ -439,16 +432,18 @@ GeometricCutReport geometric_cut(Mesh& mesh, std::span<const CutTool> tools,
                 report.warnings.push_back(tool.name + ": " + *complaint);
             add(counts, report.total);
             report.tools.push_back({tool.name, counts, topology::components(mesh).count});
-        } catch (const cutting::UndividableElement& error) {
-            throw cutting::UndividableElement(tool.name + ": " + error.what(), error.element);
+        } catch (const UndividableElement& error) {
+            throw UndividableElement(tool.name + ": " + error.what(), error.element);
         } catch (const InputError& error) {
             throw InputError(tool.name + ": " + error.what());
         }
     }
     report.after = measures_after(mesh, cutter.fragments());
     report.pieces = pieces_of(mesh);
-    report.carriers = fragments::carriers_of(mesh, cutter.fragments());
+    report.mesh = topology::to_mesh_data(mesh, mesh.rest_positions());
+    report.mesh.carriers = fragments::carriers_of(mesh, cutter.fragments());
+    report.mesh.points_may_coincide = report.total.nodes_duplicated > 0;
     return report;
 }
 
-}  // namespace incise::app
+}  // namespace incise::cutting
