@@ -142,6 +142,12 @@ InputError for a tool of the wrong kind, and incise.Error while another thread u
 During the call the tool goes there straight and by the shortest turn, and acts on all that it
 meets. A tool that is not there appears at the pose. Before a pose is set it is where the tool is;
 None for a tool that is not there.)")
+        .def_property_readonly("current_pose", held(+[](const Tool& tool) -> std::optional<Pose> {
+                                   const sim::World& world = driver_of(tool).world();
+                                   if (!world.is_tool_present(tool.id)) return std::nullopt;
+                                   return world.tool_pose(tool.id);
+                               }),
+                               "Where the tool is now, a Pose. None for a tool that is not there.")
         .def("place", held(+[](const Tool& tool, const Pose& pose) {
                  driver_of(tool).place_tool(tool.id, pose);
              }),

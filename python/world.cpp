@@ -300,8 +300,8 @@ cut: after a cut these follow the nodes here, and their sums are others by a few
         .def("view", &view,
              R"(Return a View: arrays without a copy, read-only, in a with statement.
 
-step(), run_until(), restore() and undo() raise BufferError while it is open or one of its arrays
-is kept. After nodes have been removed, the arrays are copies.
+step(), run_until(), restore(), undo() and set_material() raise BufferError while it is open or one
+of its arrays is kept. After nodes have been removed, the arrays are copies.
 
 >>> world = incise.World(mesh={"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}},
 ...                      materials=[{"density": 1000, "young": 1e5, "poisson": 0.4}])
@@ -399,9 +399,10 @@ definition: a dict with the keys of [[material]] but fibre_array. `regions` says
     all have the new material. The density must stay what it is.
 The body keeps its shape, its motion and its masses. The jump of its elastic energy counts as
 external work. Viscous stress stays if the series of `prony` has as many terms as before.
-undo() brings the former materials back; restore() needs bytes of a world with the same ones.
+undo() brings the former materials back; restore() needs bytes of a world whose materials were
+changed likewise.
 Raises InputError, and changes nothing, for what is wrong with the definition or does not suit the
-elements.)")
+elements, and BufferError while a view is open.)")
         .def(
             "set_gravity",
             [](const World& world, const py::object& gravity) {
@@ -471,6 +472,7 @@ elements.)")
                 require_no_views(world);
                 const std::string_view bytes = data;
                 without_gil(world, [&](WorldDriver& driver) { driver.restore(bytes); });
+                world->last_point.reset();  // it is of the body before
             },
             py::arg("data"),
             R"(Go to a state that save() has returned, in this world or another one.
@@ -488,7 +490,7 @@ tools; its mesh may be another. Raises InputError, and changes nothing, for othe
             R"(Return the present moment, an UndoPoint, to which undo() can go back.
 
 The world keeps the last one, for undo() without a point. It costs a few steps at most, and less
-than save(). The world keeps the edits since then, until all points from before them are gone.)")
+than save(). From now on the world keeps its edits, until all points from before them are gone.)")
         .def(
             "undo",
             [](const World& world, const std::shared_ptr<UndoPoint>& point) {
@@ -498,15 +500,16 @@ than save(). The world keeps the edits since then, until all points from before 
                     throw InputError(
                         "the world has no moment to go back to: call undo_point() before the cut");
                 without_gil(world, [&](WorldDriver& driver) { driver.undo(*to); });
+                world->last_point = to;
             },
             py::arg("point") = py::none(),
             R"(Go back to a moment of this world: take back all cuts since then, and give body, tools,
 constraints, loads and time what they had.
 
-point: from undo_point(); None: the last one. save() then returns the bytes of that moment, and
-later steps give the same bits. It costs some steps, and for each element that was cut since then
-about 0.0125 ms: little after a short stroke. It also brings a world back that has failed. The same
-point can be used again.
+point: from undo_point(); None: the last one that was taken or gone back to. save() then returns the
+bytes of that moment, and later steps give the same bits. It costs some steps, and for each element
+that was cut since then about 0.0125 ms: little after a short stroke. It also brings a world back
+that has failed. The same point can be used again.
 
 Raises InputError, and changes nothing, for a point of another world, for one after an edit that was
 taken back, and for one from before restore().
@@ -546,7 +549,8 @@ channels: a name, or several of them; one gives an array, several a dict of arra
     "segmentation": int64, (height, width): the region of the tissue; -1 where there is nothing;
         -2 for the first of World.tools, -3 for the second, ...
 
-Half spaces, sutures and cuts at once are not drawn. Raises ValueError for what cannot be.
+Half spaces, sutures and cuts at once are not drawn. Raises ValueError for what cannot be, such as
+labels of a body with regions below 0.
 
 >>> world = incise.World(mesh={"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}},
 ...                      materials=[{"density": 1000, "young": 1e5, "poisson": 0.4}])

@@ -184,8 +184,8 @@ Report WorldDriver::run_until(double time, const Poll& poll) {
         Report report;
         report.from = report.to = time;
         report.tools = feeling_;
-        report.forces.assign(feeling_->ids.size(), Vec3::Zero());
-        report.torques = report.forces;
+        player_.begin(world_);  // nothing was felt
+        finish(report);
         return report;
     }
     constexpr double max_steps = 1e10;  // more would take years
@@ -270,14 +270,14 @@ void WorldDriver::restore_rest(ArchiveReader& ar, const std::function<void()>& r
     ar(scripts, run_warnings, targets, edits);
     const std::uint64_t version = topology_version();
     restore_world();
-    if (world_.tools().size() < scripts.size()) refuse("its tools are not those of its world");
+    version_base_ = version + 1 - world_.mesh().epoch();
+    note_tools();
     last_step_ = last;
     scripts_ = std::move(scripts);
     run_warnings_ = run_warnings;
     player_.restore(targets, world_);
     edits_ = std::move(edits);
-    version_base_ = version + 1 - world_.mesh().epoch();
-    note_tools();
+    if (world_.tools().size() < scripts_.size()) refuse("its tools are not those of its world");
 }
 
 }  // namespace incise::python

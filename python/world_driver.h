@@ -153,6 +153,7 @@ class WorldDriver {
 
     void save_rest(ArchiveWriter& ar) const;
     void restore_rest(ArchiveReader& ar, const std::function<void()>& restore_world);
+    sim::ToolId present(sim::ToolId tool) const;
     void require_new_constraint(const std::string& what, const std::string& name) const;
     void warn_of_jump(const physics::Constraint& constraint);
     void require_led(sim::ToolId tool) const;

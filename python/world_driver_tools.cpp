@@ -64,8 +64,11 @@ sim::ToolId WorldDriver::add_tool(const std::string& name, const scenario::Value
     return tool;
 }
 
+/// Returns the id that a tool has now: a restore gives it another one.
+sim::ToolId WorldDriver::present(sim::ToolId tool) const { return world_.tools()[tool.index]; }
+
 std::optional<Pose> WorldDriver::tool_pose(sim::ToolId tool) const {
-    const sim::ToolInput* target = player_.targets().find(tool);
+    const sim::ToolInput* target = player_.targets().find(present(tool));
     if (target && target->pose) return target->pose;
     if (!world_.is_tool_present(tool)) return std::nullopt;
     return world_.tool_pose(tool);
@@ -90,13 +93,13 @@ void WorldDriver::require_posable(sim::ToolId tool, const Pose& pose) const {
 
 void WorldDriver::set_tool_target(sim::ToolId tool, const Pose& pose) {
     require_posable(tool, pose);
-    player_.targets().move(tool, pose);
+    player_.targets().move(present(tool), pose);
 }
 
 void WorldDriver::place_tool(sim::ToolId tool, const Pose& pose) {
     require_posable(tool, pose);
     world_.place_tool(tool, pose);
-    player_.targets().forget(tool);
+    player_.targets().forget(present(tool));
 }
 
 void WorldDriver::withdraw_tool(sim::ToolId tool) {
@@ -121,20 +124,20 @@ void WorldDriver::open(sim::ToolId tool) {
 std::size_t WorldDriver::tie(sim::ToolId tool) {
     require_led(tool);
     const std::size_t num_points = world_.tie_suture(tool);
-    player_.targets().forget(tool);
+    player_.targets().forget(present(tool));
     return num_points;
 }
 
 void WorldDriver::untie(sim::ToolId tool) {
     require_led(tool);
     world_.untie_suture(tool);
-    player_.targets().forget(tool);
+    player_.targets().forget(present(tool));
 }
 
 void WorldDriver::set_suture_target(sim::ToolId tool, double length) {
     require_led(tool);
     world_.require_possible(sim::StepInputs().draw(tool, length));
-    player_.targets().draw(tool, length);
+    player_.targets().draw(present(tool), length);
 }
 
 bool WorldDriver::is_in_tissue(sim::ToolId tool) const {
@@ -161,17 +164,21 @@ void WorldDriver::require_new_constraint(const std::string& what, const std::str
 
 void WorldDriver::add_constraint(const std::string& name, const scenario::Value& definition) {
     require_new_constraint("constraint", name);
+    std::vector<std::string> warnings;
     const physics::Constraint built =
-        scenario::build_added_constraint(definition, name, world_.mesh(), warnings_);
+        scenario::build_added_constraint(definition, name, world_.mesh(), warnings);
     world_.add_constraint(built);
+    add_warnings(warnings);
     warn_of_jump(built);
 }
 
 void WorldDriver::set_constraint(const std::string& name, const scenario::Value& definition) {
     const sim::ConstraintId id = constraint(name);
+    std::vector<std::string> warnings;
     const physics::Constraint built =
-        scenario::build_added_constraint(definition, name, world_.mesh(), warnings_);
+        scenario::build_added_constraint(definition, name, world_.mesh(), warnings);
     world_.set_constraint(id, built);
+    add_warnings(warnings);
     warn_of_jump(built);
 }
 
@@ -204,19 +211,26 @@ void WorldDriver::add_load(const std::string& name, const scenario::Value& defin
     const auto& all = world_.model().loads().all();
     if (std::ranges::find(all, name, &physics::Load::name) != all.end())
         throw InputError("load '" + name + "': the world has a load of this name already");
-    world_.add_load(scenario::build_added_load(definition, name, world_.mesh(), warnings_));
+    std::vector<std::string> warnings;
+    world_.add_load(scenario::build_added_load(definition, name, world_.mesh(), warnings));
+    add_warnings(warnings);
 }
 
 void WorldDriver::set_load(const std::string& name, const scenario::Value& definition) {
     const sim::LoadId id = load(name);
-    world_.set_load(id, scenario::build_added_load(definition, name, world_.mesh(), warnings_));
+    std::vector<std::string> warnings;
+    world_.set_load(id, scenario::build_added_load(definition, name, world_.mesh(), warnings));
+    add_warnings(warnings);
 }
 
 void WorldDriver::remove_load(const std::string& name) { world_.remove_load(load(name)); }
 
 void WorldDriver::set_material(const scenario::Value& definition) {
-    const auto [material, regions, fibre] = scenario::build_added_material(definition, warnings_);
+    std::vector<std::string> warnings;
+    const auto [material, regions, fibre] = scenario::build_added_material(definition, warnings);
     world_.set_material(material, regions, fibre);
+    run_warnings_.follow_material(world_);
+    add_warnings(warnings);
 }
 
 void WorldDriver::grasp(const std::string& name, std::vector<VertexId> nodes, const Pose& pose) {

@@ -29,6 +29,9 @@ class RunWarnings {
     /// 256 steps, so that its cost does not count.
     void add_meanwhile(const sim::World& world, std::vector<std::string>& warnings);
 
+    /// Notes that materials were changed, and with them the stable step.
+    void follow_material(const sim::World& world) { warned_step_ = world.rest_stable_step(); }
+
     static void archive(auto& ar, auto& self) {
         ar(self.overlap_, self.warned_step_, self.next_look_, self.has_told_loss_,
            self.has_told_overlap_);

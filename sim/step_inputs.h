@@ -61,7 +61,8 @@ class StepInputs {
 
     std::span<const ToolInput> tools() const { return tools_; }
     std::span<const GraspInput> grasps() const { return grasps_; }
-    /// Returns what a tool is to do, or null. Each tool and grasp is named once.
+    /// Returns what a tool is to do, or null. An id from before a restore of the world is another
+    /// one than that of now: a step refuses both together.
     /// @lifetime  until the inputs change
     const ToolInput* find(ToolId tool) const;
     const GraspInput* find(ConstraintId grasp) const;

@@ -12,7 +12,6 @@ namespace incise::sim {
 
 void ToolPlayer::begin(const World& world) {
     forces_.begin(world.time());
-    is_first_ = true;
     tools_.clear();
     for (const ToolInput& target : targets_.tools()) {
         Start& start = tools_.emplace_back();
@@ -30,14 +29,13 @@ const StepInputs& ToolPlayer::inputs(double part, bool is_last) {
     for (std::size_t i = 0; i < tools_.size(); ++i) {
         const ToolInput& target = targets_.tools()[i];
         const auto& [pose, length, is_at_once] = tools_[i];
-        const bool is_over = is_at_once && target.is_withdrawn && !is_first_;
-        if (target.pose && !is_over)
+        if (target.pose)
             inputs_.move(target.tool,
                          is_last || !pose ? *target.pose : interpolate(*pose, *target.pose, part));
         if (target.length)
             inputs_.draw(target.tool,
                          is_last ? *target.length : std::lerp(length, *target.length, part));
-        if (target.is_withdrawn && (is_at_once ? is_first_ : is_last))
+        if (target.is_withdrawn && (is_at_once || is_last))
             inputs_.withdraw(target.tool,
                              target.pose_before_end ? &*target.pose_before_end : nullptr);
     }
@@ -46,28 +44,46 @@ const StepInputs& ToolPlayer::inputs(double part, bool is_last) {
         inputs_.move(target.grasp,
                      is_last ? target.pose : interpolate(grasps_[i], target.pose, part));
     }
-    is_first_ = false;
     return inputs_;
 }
 
-void ToolPlayer::restore(const StepInputs& saved, const World& world) {
-    // An archive does not have the number of the world in its ids.
-    const auto known = [](auto ids, const auto& id) {
-        const auto found = std::ranges::find(ids, id);
-        if (found == ids.end())
-            throw InputError("its tools or constraints are not those of its world");
-        return *found;
-    };
-    StepInputs targets;
-    for (ToolInput input : saved.tools()) {
-        input.tool = known(world.tools(), input.tool);
-        targets.add(input);
+void ToolPlayer::add(const StepReport& step) {
+    forces_.add(step);
+    // What cuts at once has done so. An interval that is given up does not do it again.
+    for (std::size_t i = tools_.size(); i-- > 0;) {
+        const ToolInput& target = targets_.tools()[i];
+        if (!tools_[i].is_at_once || !target.is_withdrawn) continue;
+        targets_.forget(target.tool);
+        tools_.erase(tools_.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    for (const GraspInput& input : saved.grasps())
-        targets.move(known(world.constraints(), input.grasp), input.pose);
-    world.require_possible(targets);
-    targets_ = std::move(targets);
+}
+
+void ToolPlayer::restore(const StepInputs& saved, const World& world) {
+    targets_.clear();
+    tools_.clear();
+    grasps_.clear();
     forces_.begin(world.time());
+    const auto is_possible = [&](const StepInputs& input) {
+        try {
+            world.require_possible(input);
+            return true;
+        } catch (const InputError&) {
+            return false;
+        }
+    };
+    // An archive does not have the number of the world in its ids.
+    for (ToolInput input : saved.tools()) {
+        const auto tool = std::ranges::find(world.tools(), input.tool);
+        if (tool == world.tools().end()) continue;
+        input.tool = *tool;
+        if (is_possible(StepInputs().add(input))) targets_.add(input);
+    }
+    for (const GraspInput& input : saved.grasps()) {
+        const auto grasp = std::ranges::find(world.constraints(), input.grasp);
+        if (grasp != world.constraints().end() &&
+            is_possible(StepInputs().move(*grasp, input.pose)))
+            targets_.move(*grasp, input.pose);
+    }
 }
 
 }  // namespace incise::sim

@@ -38,8 +38,8 @@ class ToolPlayer {
     /// @param is_last  true in the last step, which ends at the targets
     /// @lifetime       until the next call
     const StepInputs& inputs(double part, bool is_last);
-    /// Adds a step to the means.
-    void add(const StepReport& step) { forces_.add(step); }
+    /// Adds a step, which had the last inputs(), to the means.
+    void add(const StepReport& step);
     /// Ends the interval. Nothing has a target any more.
     void end() { targets_.clear(); }
     /// Returns the means over the interval so far, or over the last one.
@@ -47,8 +47,8 @@ class ToolPlayer {
 
     /// Writes the targets.
     void save(ArchiveWriter& ar) const { ar(targets_); }
-    /// Reads the targets that save() has written, and forgets the means.
-    /// Throws InputError, and changes nothing, if the world does not have their tools and grasps.
+    /// Takes the targets that save() has written, and forgets the means. Targets that cannot be in
+    /// the world are left out.
     void restore(const StepInputs& saved, const World& world);
 
   private:
@@ -62,7 +62,6 @@ class ToolPlayer {
     StepInputs targets_, inputs_;
     std::vector<Start> tools_;  // by target
     std::vector<Pose> grasps_;  // by target
-    bool is_first_ = true;
     ToolForces forces_;
 };
 

@@ -55,7 +55,17 @@ const StepReport& World::Parts::checked_step(double end, double dt, const StepIn
 }
 
 void World::Parts::require_possible(const StepInputs& inputs) const {
+    const auto require_once = [](auto list, auto member) {
+        for (std::size_t i = 1; i < list.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k)
+                if (list[i].*member == list[k].*member)
+                    throw InputError(
+                        "the inputs of a step name the same thing twice, by an id from before a "
+                        "restore and by a new one");
+    };
     for (const ToolInput& input : inputs.tools()) tool_of(input.tool).require_possible(input);
+    require_once(inputs.tools(), &ToolInput::tool);
+    require_once(inputs.grasps(), &GraspInput::grasp);
     for (const GraspInput& input : inputs.grasps()) {
         const std::size_t index = constraints.position_of(input.grasp);
         const auto name = [&] { return "constraint '" + model.constraint_name(index) + "'"; };

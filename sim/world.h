@@ -221,7 +221,8 @@ class World {
     /// of the last step; see contact::ToolContactPoint. In a step of one part, the forces add up to
     /// that of its ToolState. Nothing for other tools, for tools that are not there, and after
     /// restore() and undo().
-    /// @lifetime  until the next step, or until the tool is placed or opened
+    /// @lifetime  until the world is stepped, restored or destroyed, or the tool is placed or
+    /// opened
     std::span<const contact::ToolContactPoint> tool_contacts(ToolId tool) const;
     bool is_tool_present(ToolId tool) const;
     Pose tool_pose(ToolId tool) const;
@@ -286,15 +287,15 @@ class World {
     /// Gives regions another material from the next step on: tissue that is heated, swollen or
     /// torn. The body keeps positions, velocities and masses; the jump of its elastic energy counts
     /// as external work. Viscous stress stays where the Prony series has as many terms of the same
-    /// rule as before; else it begins anew. restore() then needs bytes of a world with these
-    /// materials; undo() brings the former ones back.
+    /// rule as before; else it begins anew. restore() then needs bytes of a world whose
+    /// materials were changed likewise; undo() brings the former ones back.
     /// @param regions  empty: all
     /// @param fibre    the direction of the fibres at rest, of unit length, for a law that needs
     /// it;
     ///                 if not set, elements keep theirs
     /// Throws InputError, and changes nothing, for an invalid material, one with another density
     /// than that of the region, a region that the body does not have, a material that does not suit
-    /// its elements, and one that is too soft or stiff for a tool that is there.
+    /// its elements, and one that is too soft for the toughness of a blade of the world.
     /// Cost: O(n), that of a new world without its mesh.
     void set_material(const physics::Material& material, std::span<const int> regions = {},
                       const std::optional<Vec3>& fibre = {});

@@ -105,7 +105,10 @@ void World::Parts::go_back(std::span<const physics::BodyEdit* const> edits,
     }
     time = read_time(ar);
     if (with != materials) {
-        physics::MaterialTable table = *with->table;
+        // The same moment may be gone back to again, and a later one from here.
+        materials->table = materials_with_fibres();
+        physics::MaterialTable table = std::move(*with->table);
+        with->table.reset();
         if (!table.fibres.empty())
             table.fibres.resize(model.fragments().element_capacity(), Vec3::Zero());
         model.set_materials(std::move(table), time);

@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <span>
 #include <utility>
@@ -16,7 +15,9 @@ namespace incise::sim {
 
 namespace {
 
-/// Returns a table in which regions have another material, without materials that no region has.
+/// Returns a table in which regions have another material, without materials that no region has. It
+/// stands where that stood which it replaces, so that a material that comes back gives the table of
+/// before.
 /// @param regions  empty: all
 physics::MaterialTable with_material(physics::MaterialTable table,
                                      const fragments::FragmentMesh& fragments,
@@ -29,23 +30,30 @@ physics::MaterialTable with_material(physics::MaterialTable table,
     for (const int region : regions)
         if (!table.of_region.contains(region))
             throw InputError("the body has no region " + std::to_string(region));
-    table.materials.push_back(material);
+    // That of the first region with a material that no other region has; else it is a new one.
+    std::size_t place = table.materials.size();
+    for (const auto& [region, index] : table.of_region)
+        if (place == table.materials.size() && is_meant(region) &&
+            std::ranges::none_of(table.of_region, [&](const auto& other) {
+                return other.second == index && !is_meant(other.first);
+            }))
+            place = index;
+    if (place == table.materials.size()) table.materials.emplace_back();
+    table.materials[place] = material;
     for (auto& [region, index] : table.of_region)
-        if (is_meant(region)) index = table.materials.size() - 1;
-    std::vector<physics::Material> used;
-    std::map<std::size_t, std::size_t> new_index;
-    for (auto& [region, index] : table.of_region) {
-        const auto [at, is_new] = new_index.try_emplace(index, used.size());
-        if (is_new) used.push_back(table.materials[index]);
-        index = at->second;
+        if (is_meant(region)) index = place;
+    for (std::size_t i = table.materials.size(); i-- > 0;) {
+        const auto has_it = [&](const auto& entry) { return entry.second == i; };
+        if (std::ranges::any_of(table.of_region, has_it)) continue;
+        table.materials.erase(table.materials.begin() + static_cast<std::ptrdiff_t>(i));
+        for (auto& [region, index] : table.of_region) index -= index > i ? 1 : 0;
     }
-    table.materials = std::move(used);
     if (std::ranges::none_of(table.materials, &physics::Material::has_fibres)) {
         table.fibres.clear();
     } else if (fibre) {
         table.fibres.resize(fragments.element_capacity(), Vec3::Zero());
         for (const ElementId e : fragments.elements())
-            if (is_meant(fragments.region(e))) table.fibres[e.index()] = *fibre;
+            if (is_meant(fragments.region(e))) table.fibres[e.index()] = fibre->normalized();
     }
     return table;
 }
@@ -106,14 +114,14 @@ void World::add_force_term(std::unique_ptr<physics::ForceTerm> term) {
     if (!term) throw InputError("a force term is given as null");
     parts_->model.add_force_term(std::move(term));
     parts_->loads_have_changed = true;
-    parts_->stable_step = parts_->present_bound();
+    parts_->renew_stable_step();
 }
 
 void World::remove_force_term(const physics::ForceTerm* term) {
     if (!parts_->model.remove_force_term(term))
         throw InputError("the world does not have this force term");
     parts_->loads_have_changed = true;
-    parts_->stable_step = parts_->present_bound();
+    parts_->renew_stable_step();
 }
 
 LoadId World::add_load(physics::Load load) {
@@ -174,7 +182,7 @@ void World::set_material(const physics::Material& material, std::span<const int>
         with_material(before, p.model.fragments(), material, regions, fibre);
     for (const auto& tool : p.tools) tool->require_fit(p.tissue(), table);
     p.model.set_materials(table, p.time);
-    p.stable_step = p.present_bound();
+    p.renew_stable_step();
     // Moments that can be gone back to have the materials of then.
     p.materials->table = std::move(before);
     p.materials = std::make_shared<FormerMaterials>();

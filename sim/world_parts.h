@@ -66,8 +66,7 @@ struct BoundInterval {
 /// Relative rounding of a step that is an exact fraction of an interval.
 inline constexpr double rounding_of_steps = 1e-8;
 
-/// The materials before they were changed, which moments from before then refer to. Empty while the
-/// world has them.
+/// Materials that moments to go back to refer to. Empty while the world has them.
 struct FormerMaterials {
     std::optional<physics::MaterialTable> table;  // its fibres are by id of fragments
 };
@@ -111,6 +110,8 @@ struct World::Parts {
     double present_bound() const;
     /// Follows a step with the stable step.
     void update_stable_step();
+    /// Sets the stable step anew, after a change from outside.
+    void renew_stable_step();
     /// Returns in how many parts, none above the stable step, a step of `dt`, s, is made. Throws
     /// InputError if they would be too many.
     std::size_t num_parts(double dt, const StepInputs& inputs) const;

@@ -158,6 +158,11 @@ double World::Parts::present_bound() const {
     return std::min(model.stable_step(), motion / std::sqrt(fastest));
 }
 
+void World::Parts::renew_stable_step() {
+    stable_step = present_bound();
+    bound_interval = {bound_interval.element_length};
+}
+
 void World::Parts::update_stable_step() {
     BoundInterval& interval = bound_interval;
     ++interval.num_steps;

@@ -127,14 +127,15 @@ class _Scene:
         names = np.unique(surface.regions)
         colors = TISSUE[np.searchsorted(names, surface.regions) % len(TISSUE)]
         colors[surface.is_cut] = CUT
+        self.least_region = int(names[0])
         points, triangles = [self.body], [surface.triangles]
         paint, labels = [colors], [surface.regions]
         self.lines: list[renderer.Lines] = []
         line_labels = []
         num_points = len(self.body)
         for i, tool in enumerate(world.tools.values()):
-            definition, pose = tool.definition, tool.pose
-            if definition is None or pose is None or not tool.is_present:
+            definition, pose = tool.definition, tool.current_pose
+            if definition is None or pose is None:
                 continue
             for own, faces in _solids(definition.get("shape", {})):
                 points.append(pose.to_world(own))
@@ -161,7 +162,13 @@ def render(world: incise.World, width: int, height: int, view: Any,
     for name in wanted:
         if name not in CHANNELS:
             raise ValueError(f"there is no channel {name!r}: there are {', '.join(CHANNELS)}")
+    before = (world.time, world.topology_version)
     scene = _Scene(world)
+    if (world.time, world.topology_version) != before:
+        raise incise.Error("another thread has stepped the world while its picture was made")
+    if "segmentation" in wanted and scene.least_region < 0:
+        raise ValueError(f"the body has a region {scene.least_region}: a segmentation needs "
+                         "regions from 0 on")
     camera = _camera(scene.body, (height, width), view)
     owner, near = renderer.trace(camera, scene.points, scene.triangles, scene.lines)
     made: dict[str, Any] = {}

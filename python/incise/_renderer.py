@@ -31,6 +31,7 @@ class Camera:
         self.shape = shape
         self.focal_length = 0.5 * shape[0] / np.tan(0.5 * field_of_view)
         forward = np.asarray(target, float) - self.position
+        self.near = NEAR * float(np.linalg.norm(forward))
         forward /= np.linalg.norm(forward)
         right = np.cross(forward, [0.0, 0.0, 1.0])
         if np.linalg.norm(right) < 1e-6:
@@ -40,13 +41,56 @@ class Camera:
 
     def project(self, points: Floats) -> Floats:
         """Return pixel column, pixel row and distance, shape (N, 3), of points (N, 3), m."""
-        seen = (points - self.position) @ self.axes.T
-        depth = np.maximum(seen[:, 2], 1e-6)
+        return self._on_picture((points - self.position) @ self.axes.T)
+
+    def _on_picture(self, seen: Floats) -> Floats:
+        """Return the same of points (..., 3) in the frame of the camera."""
+        depth = np.maximum(seen[..., 2], self.near)
         height, width = self.shape
-        return np.stack([0.5 * width + self.focal_length * seen[:, 0] / depth,
-                         0.5 * height + self.focal_length * seen[:, 1] / depth, depth], axis=1)
+        return np.stack([0.5 * width + self.focal_length * seen[..., 0] / depth,
+                         0.5 * height + self.focal_length * seen[..., 1] / depth, depth], axis=-1)
+
+    def project_faces(self, points: Floats, faces: Integers) -> tuple[Floats, Integers]:
+        """Return the parts of triangles in front of the camera, as project(), and their rows.
+
+        faces: rows of points, shape (T, 3). The parts have the shape (S, 3, 3).
+        """
+        seen = (points - self.position) @ self.axes.T
+        rows = np.arange(len(faces))
+        is_far = (seen[:, 2] > self.near)[faces]
+        if is_far.all():
+            return self._on_picture(seen)[faces], rows
+        whole = is_far.all(axis=1)
+        parts, owners = [seen[faces[whole]]], [rows[whole]]
+        for i in np.flatnonzero(is_far.any(axis=1) & ~whole):
+            corners = seen[faces[i]]
+            polygon: list[Floats] = []
+            for a, b in zip(corners, np.roll(corners, -1, axis=0)):
+                if a[2] > self.near:
+                    polygon.append(a)
+                if (a[2] > self.near) != (b[2] > self.near):
+                    polygon.append(a + (self.near - a[2]) / (b[2] - a[2]) * (b - a))
+            fan = [[polygon[0], polygon[k], polygon[k + 1]] for k in range(1, len(polygon) - 1)]
+            parts.append(np.array(fan))
+            owners.append(np.full(len(fan), i))
+        return self._on_picture(np.concatenate(parts)), np.concatenate(owners)
+
+    def in_front(self, segments: Floats) -> Floats:
+        """Return the parts of segments (M, 2, 3), m, that are in front of the camera."""
+        depth = (segments - self.position) @ self.axes[2]
+        is_far = depth > self.near
+        if is_far.all():
+            return segments
+        kept = segments[is_far.any(axis=1)].copy()
+        depth, is_far = depth[is_far.any(axis=1)], is_far[is_far.any(axis=1)]
+        for end in (0, 1):
+            cut = np.flatnonzero(~is_far[:, end])
+            part = (self.near - depth[cut, end]) / (depth[cut, 1 - end] - depth[cut, end])
+            kept[cut, end] += part[:, None] * (kept[cut, 1 - end] - kept[cut, end])
+        return kept
 
 
+NEAR = 1e-3  # what is nearer to the camera is not seen, as a part of the distance of its target
 LIGHT = np.array([0.3, -0.45, 0.84])
 BACKGROUND = (222, 228, 233)
 MIN_LINE_WIDTH = 2.0  # pixels
@@ -156,11 +200,12 @@ def trace(camera: Camera, points: Floats, triangles: Integers,
         segment of no length is a dot.
     """
     height, width = camera.shape
-    seen = camera.project(points)
-    seen[:, 2] = 1.0 / seen[:, 2]
+    seen, rows = camera.project_faces(points, triangles)
+    seen[:, :, 2] = 1.0 / seen[:, :, 2]
     front = np.zeros(height * width)
     owner = np.zeros(height * width, np.int32)
-    for triangle, pixel, near in pixels(seen[triangles], camera.shape):
+    for part, pixel, near in pixels(seen, camera.shape):
+        triangle = rows[part]
         left = np.flatnonzero(near >= front[pixel])
         triangle, pixel, near = triangle[left] + 1, pixel[left], near[left]
         # Of equal pixels the last one is written. So those that are nearer come again.
@@ -170,7 +215,8 @@ def trace(camera: Camera, points: Floats, triangles: Integers,
             triangle, pixel, near = triangle[left], pixel[left], near[left]
     of_lines = front.copy()
     for i, (segments, line_width, _) in enumerate(lines):
-        for _, pixel, near in pixels(ribbons(camera, segments, line_width), camera.shape):
+        shown = ribbons(camera, camera.in_front(segments), line_width)
+        for _, pixel, near in pixels(shown, camera.shape):
             is_seen = LINE_REACH * near >= front[pixel]
             owner[pixel[is_seen]] = 1 + len(triangles) + i
             of_lines[pixel[is_seen]] = near[is_seen]

@@ -110,6 +110,49 @@ class Changes(unittest.TestCase):
         self.assertIn("moves nodes by up to", str(caught[-1].message))
 
 
+class Handles(unittest.TestCase):
+    def test_tool_of_before_a_restore_is_the_same_tool(self) -> None:
+        body = support.world()
+        knife = body.add_tool("knife", support.BLADE, incise.Pose([0.07, 0, 0.06]))
+        knife.pose = incise.Pose([0.07, 0, 0.05])
+        body.restore(body.save())
+        self.assertEqual(knife.pose, incise.Pose([0.07, 0, 0.05]))
+        self.assertEqual(knife.current_pose, incise.Pose([0.07, 0, 0.06]))
+        body.tools["knife"].withdraw()
+        knife.pose = incise.Pose([0.07, 0, 0.055])
+        body.step(n=3)
+        self.assertIsNone(knife.current_pose)
+        knife.pose = incise.Pose([0.07, 0, 0.05])
+        body.restore(body.save())
+        knife.place(incise.Pose([0.03, 0, 0.06]))
+        body.step()
+        self.assertEqual(knife.current_pose, incise.Pose([0.03, 0, 0.06]))
+
+    def test_call_that_ends_early_leaves_no_cut_behind(self) -> None:
+        """The plane has cut in the first step; the call ends at a later one."""
+        body = support.world()
+        body.add_tool("plane", {"kind": "cut", "plane": {"point": [0.05, 0, 0],
+                                                         "normal": [1, 0, 0.1]}})
+        ball = body.add_tool("ball", {"kind": "probe", "shape": {"sphere": {"radius": 0.01}}},
+                             incise.Pose([0.06, 0.02, 0.2]))
+        body.step(n=2)
+        self.assertEqual(body.ledger()["components"], 2)
+        ball.pose = incise.Pose([0.06, 0.02, 1e6])
+        with self.assertRaises(incise.InputError):
+            body.step(n=2)
+        ball.place(incise.Pose([0.06, 0.02, 0.2]))
+        body.step(n=2)
+
+    def test_refused_changes_leave_no_warning(self) -> None:
+        body = support.world()
+        before = body.warnings
+        with self.assertRaises(incise.InputError):
+            body.add_constraint("x", {"fix": "xyz", "where": {"box": {"min": [-1, -1, -1],
+                                                                     "max": [1, 1, 1]}},
+                                      "move": [{"time": 0, "by": [1, 0, 0]}]})
+        self.assertEqual(body.warnings, before)
+
+
 class Contacts(unittest.TestCase):
     def test_add_up_to_the_force_of_a_step(self) -> None:
         body = support.world()
@@ -179,6 +222,36 @@ class Pictures(unittest.TestCase):
         wide = 101 / (2 * np.tan(0.05))  # pixels a metre at 1 m
         self.assertAlmostEqual(seen[50].sum(), min(101, 0.12 * wide), delta=2)
         self.assertAlmostEqual(seen[:, 50].sum(), 0.04 * wide, delta=2)
+
+    def test_what_is_behind_the_camera_is_not_seen(self) -> None:
+        body = support.world()
+        away = {"position": [0.06, 0.02, 1.04], "target": [0.06, 0.02, 2.0]}
+        self.assertEqual(set(body.render(31, 31, away, "segmentation").ravel().tolist()), {-1})
+        # From inside, the wall at the end is 0.06 m away.
+        inside = {"position": [0.06, 0.02, 0.02], "target": [0.12, 0.02, 0.02],
+                  "field_of_view": 0.5}
+        depth = body.render(31, 31, inside, "depth")
+        self.assertTrue(np.isfinite(depth).all())
+        self.assertAlmostEqual(depth[15, 15], 0.06, places=6)
+        self.assertLess(depth.max(), 0.0601)
+        # A wide view from inside has the sides too, which reach behind the camera.
+        wide = body.render(41, 41, {**inside, "field_of_view": 2.5}, "depth")
+        self.assertTrue(np.isfinite(wide).all())
+        self.assertLess(wide.min(), 0.02)
+        knife = body.add_tool("knife", {"kind": "blade", "edge": [[0.0, 0.02, 0.02],
+                                                                  [0.11, 0.02, 0.02]]},
+                              incise.Pose())
+        knife.pose = incise.Pose([0, 0.3, 0])  # a target: it is still there
+        labels = body.render(31, 31, {**inside, "position": [0.06, 0.02, 0.021]}, "segmentation")
+        self.assertEqual(set(labels.ravel().tolist()), {-2, 0})
+
+    def test_regions_below_zero_have_no_labels(self) -> None:
+        block = incise.Mesh.box([1, 1, 1], [1, 1, 1])
+        mesh = incise.Mesh(block.points, block.cells, regions=[-1] * 6)
+        body = incise.World(mesh=mesh, materials=[support.MATERIAL])
+        self.assertEqual(body.render(8, 8).shape, (8, 8, 3))
+        with self.assertRaisesRegex(ValueError, "region -1"):
+            body.render(8, 8, channels="segmentation")
 
     def test_whole_body_is_in_the_picture(self) -> None:
         body = support.world()

@@ -222,21 +222,41 @@ TEST(ToolPlayer, GoesOnWithTheSameBitsFromSavedTargets) {
     EXPECT_EQ(resumed.forces().of(t.ball).force, player.forces().of(t.ball).force);
 }
 
-TEST(ToolPlayer, RefusesTargetsOfWhatAWorldDoesNotHave) {
+TEST(ToolPlayer, LeavesOutTargetsOfWhatAWorldDoesNotHave) {
     const Theatre t = theatre();
     ToolPlayer player;
     World empty = resting_world();
     const ToolId ball = add_ball(empty);
     player.targets().move(ball, at(above));
-    // It has the ball, but not the knife.
-    EXPECT_THROW(player.restore(targets_of(t), empty), InputError);
-    EXPECT_THROW(player.restore(StepInputs().withdraw(t.knife), empty), InputError);
-    EXPECT_THROW(player.restore(StepInputs().move(t.hand, Pose()), empty), InputError);
-    // It has changed nothing.
+    // It has the ball, but not the knife and the hand.
+    player.restore(targets_of(t), empty);
     EXPECT_EQ(player.targets().tools().size(), 1u);
     EXPECT_EQ(player.targets().grasps().size(), 0u);
     ASSERT_NE(player.targets().find(ball), nullptr);
-    expect_same(player.targets().find(ball)->pose.value(), at(above));
+    player.restore(StepInputs().withdraw(t.knife).move(t.hand, Pose()), empty);
+    EXPECT_EQ(player.targets().tools().size(), 0u);
+    EXPECT_NO_THROW(player.begin(empty));
+}
+
+// An interval is given up after its first step, in which a plane has cut and was withdrawn.
+TEST(ToolPlayer, DoesNotCutAgainInAnIntervalThatIsGivenUp) {
+    World world = resting_world();
+    const ToolId plane =
+        world.add_tool({"plane", cutting::PlaneCut{{0, 0, 0.52 * size}, Vec3::UnitZ()}});
+    for (const bool has_pose : {false, true}) {
+        SCOPED_TRACE(has_pose);
+        if (!has_pose) world.place_tool(plane, Pose());
+        ToolPlayer player;
+        player.targets().withdraw(plane);
+        if (has_pose) player.targets().move(plane, Pose());
+        player.begin(world);
+        player.add(world.step(0.5 * world.stable_step(), player.inputs(0.1, false)));
+        EXPECT_FALSE(world.is_tool_present(plane));
+        player.begin(world);
+        player.add(world.step(0.5 * world.stable_step(), player.inputs(1.0, true)));
+        EXPECT_FALSE(world.is_tool_present(plane));
+        EXPECT_TRUE(world.report().edits.empty());
+    }
 }
 
 }  // namespace

@@ -86,8 +86,8 @@ TEST(WorldChanges, TheSameMaterialChangesNothing) {
         World world = moved_world(body(), false), other = moved_world(body(), false);
         world.set_material(def.materials[0]);
         for (int i = 0; i < 20; ++i) {
-            world.step(0.5 * world.rest_stable_step());
-            other.step(0.5 * other.rest_stable_step());
+            world.step(0.1 * world.rest_stable_step());
+            other.step(0.1 * other.rest_stable_step());
         }
         for (const VertexId n : world.mesh().nodes())
             ASSERT_EQ(world.positions()[n.index()], other.positions()[n.index()]);
@@ -264,6 +264,69 @@ TEST(WorldChanges, AreTakenBackByUndo) {
                 world.set_material(stiffer(def.materials[0]));
                 step(0.06);
             }
+    }
+}
+
+// Without edits between them, both of two moments can be gone back to from the other.
+TEST(WorldChanges, AMomentBeforeAndOneAfterAreBothGoneBackTo) {
+    World world = held_world();
+    const physics::Material plain = world.model().elements().materials().materials[0];
+    run_until(world, 0.01);
+    const UndoPoint before = world.undo_point();
+    const std::string bytes_before = world.save();
+    world.set_material(stiffer(plain));
+    const UndoPoint after = world.undo_point();
+    const std::string bytes_after = world.save();
+    for (int i = 0; i < 3; ++i) {
+        world.undo(before);
+        ASSERT_TRUE(world.save() == bytes_before);
+        run_until(world, world.time() + 0.002);
+        world.undo(after);
+        ASSERT_TRUE(world.save() == bytes_after);
+        run_until(world, world.time() + 0.002);
+    }
+}
+
+// Bytes of before fit again when a material comes back, in whatever order regions are changed.
+TEST(WorldChanges, AMaterialThatComesBackGivesTheStateOfBefore) {
+    WorldDef def = soft_body();
+    auto mesh = cube();
+    for (std::size_t i = 0; i < mesh.regions.size(); ++i) mesh.regions[i] = int(i % 3);
+    def.mesh = std::move(mesh);
+    const physics::Material first = def.materials[0], second = stiffer(first);
+    def.materials.push_back(second);
+    def.material_of_region = {{0, 1}, {1, 0}, {2, 1}};
+    World world = held(World(std::move(def)));
+    run_until(world, 0.01);
+    const std::string bytes = world.save();
+    for (const int region : {1, 0, 2}) {
+        SCOPED_TRACE(region);
+        const std::array changed{region};
+        physics::Material third = first;
+        third.method = physics::HyperElasticLinks{physics::NeoHookean{300.0, 900.0}};
+        world.set_material(third, changed);
+        EXPECT_THAT(input_error_of([&] { world.restore(bytes); }), HasSubstr("other materials"));
+        if (region != 1) break;  // 0 and 2 have shared one: they are apart now
+        world.set_material(first, changed);
+        EXPECT_NO_THROW(world.restore(bytes));
+        EXPECT_TRUE(world.save() == bytes);
+    }
+}
+
+// The stable step follows at once, and does not fall back later to what it was.
+TEST(WorldChanges, SofterTissueTakesLongerStepsFromThenOn) {
+    World world = held_world();
+    const physics::Material plain = world.model().elements().materials().materials[0];
+    physics::Material soft = plain;
+    soft.method = physics::HyperElasticLinks{physics::NeoHookean{2.0, 6.0}};
+    world.set_gravity(Vec3::Zero());
+    run_until(world, 0.05);
+    const double before = world.stable_step();
+    world.set_material(soft);
+    EXPECT_GT(world.stable_step(), 5.0 * before);
+    for (int i = 0; i < 2500; ++i) {
+        world.step(0.2 * world.rest_stable_step());
+        ASSERT_GT(world.stable_step(), 2.0 * before);
     }
 }
 

@@ -101,6 +101,17 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
     EXPECT_TRUE(world.save() == undisturbed.world().save());
 }
 
+// An id from before a restore names the same tool as that of now: both in one step are refused.
+TEST(World, RefusesInputsThatNameAToolTwice) {
+    World world = held_world();
+    const ToolId former = world.add_tool(scalpel());
+    world.restore(world.save());
+    const ToolId now = world.tools()[0];
+    world.step(1e-5, StepInputs().move(former, scalpel_pose(0.0)));
+    const auto twice = StepInputs().move(now, scalpel_pose(0.1)).withdraw(former);
+    EXPECT_NE(input_error_of([&] { world.step(1e-5, twice); }).find("twice"), std::string::npos);
+}
+
 TEST(World, StepsThatAreRefusedLeaveNothingBehind) {
     struct Room {
         World world;
