@@ -51,9 +51,9 @@ double Contact::normal_work(const physics::Model& model) const {
     for (std::size_t i = 0; i < solver_.size(); ++i) {
         const ContactPoint& point = solver_.point(i);
         const Vec3& impulse = solver_.impulse(i);
-        if (point.is_held || impulse.isZero(0.0)) continue;
+        if (point.is_bilateral || impulse.isZero(0.0)) continue;
         Vec3 sum = -2.0 * point.velocity;
-        for (const Share& share : solver_.shares(i))
+        for (const NodeWeight& share : solver_.weights(i))
             sum += share.weight *
                    (start_velocities_[share.number] + model.velocities()[share.node.index()]);
         work += 0.5 * impulse.dot(point.normal) * sum.dot(point.normal);
@@ -79,8 +79,8 @@ void Contact::project(physics::Model& model, double /*time*/, double dt) {
     impulses_.assign(masses.size(), Vec3::Zero());
     for (std::size_t i = 0; i < solver_.size(); ++i) {
         if (solver_.impulse(i).isZero(0.0)) continue;
-        num_points_ += solver_.point(i).is_held ? 0 : 1;
-        for (const Share& share : solver_.shares(i))
+        num_points_ += solver_.point(i).is_bilateral ? 0 : 1;
+        for (const NodeWeight& share : solver_.weights(i))
             impulses_[share.node.index()] += share.weight * solver_.impulse(i);
     }
     model.give_impulses(impulses_);

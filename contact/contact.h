@@ -26,7 +26,7 @@ class Contact final : public physics::VelocityProjection {
     /// Follows the edits of a step, or begins.
     /// @param surface  of the body
     void follow(const physics::Model& model, const topology::BoundarySurface& surface) {
-        tissue_.know_surface(model, surface);
+        tissue_.follow(model, surface);
     }
     /// Begins the list of the tools that touch the tissue in the next step.
     void begin_tools() { tools_.clear(); }

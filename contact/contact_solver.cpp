@@ -25,12 +25,12 @@ constexpr double turning_length = 4.0;
 void ContactSolver::clear() {
     points_.clear();
     begins_.clear();
-    shares_.clear();
+    weights_.clear();
     on_surface_.clear();
     impulses_.clear();
     for (const NodeId node : node_ids_) number_by_id_[node.index()] = -1;
     node_ids_.clear();
-    last_shares_.clear();
+    last_weights_.clear();
     threads_.clear();
     thread_begins_.clear();
     segment_points_.clear();
@@ -42,25 +42,25 @@ std::uint32_t ContactSolver::number_of(NodeId node) {
     if (number < 0) {
         number = static_cast<std::int32_t>(node_ids_.size());
         node_ids_.push_back(node);
-        last_shares_.push_back(std::numeric_limits<std::size_t>::max());
+        last_weights_.push_back(std::numeric_limits<std::size_t>::max());
     }
     return static_cast<std::uint32_t>(number);
 }
 
 void ContactSolver::begin(const ContactPoint& point) {
     points_.push_back(point);
-    begins_.push_back(shares_.size());
+    begins_.push_back(weights_.size());
 }
 
-void ContactSolver::add_share(NodeId node, double weight) {
+void ContactSolver::add_weight(NodeId node, double weight) {
     const std::uint32_t number = number_of(node);
-    std::size_t& last = last_shares_[number];
-    if (last < shares_.size() && last >= begins_.back()) {
-        shares_[last].weight += weight;
+    std::size_t& last = last_weights_[number];
+    if (last < weights_.size() && last >= begins_.back()) {
+        weights_[last].weight += weight;
         return;
     }
-    last = shares_.size();
-    shares_.push_back({node, number, weight});
+    last = weights_.size();
+    weights_.push_back({node, number, weight});
 }
 
 void ContactSolver::begin_thread(const Thread& thread) {
@@ -70,7 +70,7 @@ void ContactSolver::begin_thread(const Thread& thread) {
 
 void ContactSolver::begin_segment(const Vec3& span, const Vec3& impulse) {
     segment_points_.push_back(points_.size());
-    begin({.impulse = impulse, .is_held = true, .offset = span});
+    begin({.impulse = impulse, .is_bilateral = true, .offset = span});
 }
 
 std::vector<std::pair<VertexId, Vec3>> ContactSolver::surface_impulses() const {
@@ -96,12 +96,12 @@ std::vector<std::pair<VertexId, Vec3>> ContactSolver::surface_impulses() const {
 Vec3 ContactSolver::velocity(std::size_t begin, std::size_t end) const {
     Padded sum = Padded::Zero();
     for (std::size_t s = begin; s < end; ++s)
-        sum += shares_[s].weight * nodes_[shares_[s].number].velocity;
+        sum += weights_[s].weight * nodes_[weights_[s].number].velocity;
     return sum.head<3>();
 }
 
 Vec3 ContactSolver::velocity(std::size_t i) const {
-    return velocity(begins_[i], begins_[i] + shares(i).size());
+    return velocity(begins_[i], begins_[i] + weights(i).size());
 }
 
 void ContactSolver::take_nodes(std::span<const Vec3> velocities,
@@ -127,25 +127,25 @@ void ContactSolver::make_rows(double dt, double rest_step, bool removes_overlaps
             continue;
         }
         const ContactPoint& point = points_[i];
-        const std::size_t begin = begins_[i], end = begin + shares(i).size();
+        const std::size_t begin = begins_[i], end = begin + weights(i).size();
         Padded padded_softness = Padded::Zero();
         double softest = 0.0;
         for (std::size_t s = begin; s < end; ++s) {
-            const Padded& of_node = nodes_[shares_[s].number].inverse_mass;
-            padded_softness += shares_[s].weight * shares_[s].weight * of_node;
+            const Padded& of_node = nodes_[weights_[s].number].inverse_mass;
+            padded_softness += weights_[s].weight * weights_[s].weight * of_node;
             softest = std::max(softest, of_node.maxCoeff());
         }
         const Vec3 softness = padded_softness.head<3>();
         const double along_normal = point.normal.cwiseAbs2().dot(softness);
-        if (!point.is_held && !(along_normal > least_softness * softest)) continue;
+        if (!point.is_bilateral && !(along_normal > least_softness * softest)) continue;
         Row& row = rows_.emplace_back();
         row.point = static_cast<std::uint32_t>(i);
         row.begin = static_cast<std::uint32_t>(begin);
         row.end = static_cast<std::uint32_t>(end);
-        row.is_held = point.is_held;
+        row.is_bilateral = point.is_bilateral;
         row.velocity = point.velocity;
         row.largest_impulse = point.largest_force * dt;
-        if (point.is_held) {
+        if (point.is_bilateral) {
             row.softness = softness;
             row.drift = correction / rest_step * point.offset;
             continue;
@@ -173,7 +173,7 @@ void ContactSolver::relax_held(Row& row) {
 }
 
 void ContactSolver::relax(Row& row) {
-    if (row.is_held) return relax_held(row);
+    if (row.is_bilateral) return relax_held(row);
     const Vec3 relative = velocity(row.begin, row.end) - row.velocity;
     const double parting = relative.dot(row.normal), before = row.normal_impulse;
     if (before == 0.0 && parting + row.allowed > -rounding_) return;
@@ -193,7 +193,7 @@ void ContactSolver::relax(Row& row) {
 
 void ContactSolver::begin_with_impulse(Row& row) {
     const Vec3& known = points_[row.point].impulse;
-    if (row.is_held) {
+    if (row.is_bilateral) {
         const double length = known.norm();
         const double share = length > row.largest_impulse ? row.largest_impulse / length : 1.0;
         // What is prescribed by now needs no impulse.
@@ -241,10 +241,10 @@ double ContactSolver::best_share_of_impulses() const {
         if (row.impulse.isZero(0.0)) return;
         Padded before = Padded::Zero(), after = Padded::Zero();
         for (std::size_t s = row.begin; s < row.end; ++s) {
-            before += shares_[s].weight * velocities_before_[shares_[s].number];
-            after += shares_[s].weight * nodes_[shares_[s].number].velocity;
+            before += weights_[s].weight * velocities_before_[weights_[s].number];
+            after += weights_[s].weight * nodes_[weights_[s].number].velocity;
         }
-        const Vec3 aim = row.is_held ? row.drift : Vec3(row.allowed * row.normal);
+        const Vec3 aim = row.is_bilateral ? row.drift : Vec3(row.allowed * row.normal);
         linear += row.impulse.dot(before.head<3>() - row.velocity + aim);
         square += row.impulse.dot((after - before).head<3>());
     };
@@ -262,8 +262,8 @@ void ContactSolver::change_impulse(Row& row, const Vec3& to) {
     Padded change;
     change << to - row.impulse, 0.0;
     for (std::size_t s = row.begin; s < row.end; ++s) {
-        Node& node = nodes_[shares_[s].number];
-        node.velocity += shares_[s].weight * node.inverse_mass.cwiseProduct(change);
+        Node& node = nodes_[weights_[s].number];
+        node.velocity += weights_[s].weight * node.inverse_mass.cwiseProduct(change);
     }
     row.impulse = to;
 }
@@ -282,14 +282,14 @@ void ContactSolver::make_thread_rows(double dt) {
             Row& segment = segments_.emplace_back();
             segment.point = static_cast<std::uint32_t>(point);
             segment.begin = static_cast<std::uint32_t>(first);
-            segment.end = static_cast<std::uint32_t>(first + shares(point).size());
-            segment.is_held = true;
+            segment.end = static_cast<std::uint32_t>(first + weights(point).size());
+            segment.is_bilateral = true;
             segment.velocity.setZero();
             segment.drift = span / dt;
             Padded padded_softness = Padded::Zero();
             for (std::size_t s = segment.begin; s < segment.end; ++s)
-                padded_softness +=
-                    shares_[s].weight * shares_[s].weight * nodes_[shares_[s].number].inverse_mass;
+                padded_softness += weights_[s].weight * weights_[s].weight *
+                                   nodes_[weights_[s].number].inverse_mass;
             segment.softness = padded_softness.head<3>();
             const double softest = segment.softness.maxCoeff(), length = span.norm();
             const bool turns = length <= turning_length * softest * thread.impulse * dt;
@@ -343,16 +343,16 @@ void ContactSolver::relax_tension(ThreadRow& thread) {
         missing -= direction.dot(rate);
         directions_[k] << direction, 0.0;
         for (std::size_t s = segment.begin; s < segment.end; ++s)
-            changes_[shares_[s].number].setZero();
+            changes_[weights_[s].number].setZero();
     }
     for (std::size_t k = thread.begin; k < thread.end; ++k)
         for (std::size_t s = segments_[k].begin; s < segments_[k].end; ++s)
-            changes_[shares_[s].number] += shares_[s].weight * directions_[k];
+            changes_[weights_[s].number] += weights_[s].weight * directions_[k];
     double softness = thread.softness;
     for (std::size_t k = thread.begin; k < thread.end; ++k)
         for (std::size_t s = segments_[k].begin; s < segments_[k].end; ++s) {
-            const std::uint32_t n = shares_[s].number;
-            softness += shares_[s].weight *
+            const std::uint32_t n = weights_[s].number;
+            softness += weights_[s].weight *
                         directions_[k].dot(nodes_[n].inverse_mass.cwiseProduct(changes_[n]));
         }
     thread.impulse = std::clamp(thread.impulse + missing / softness, 0.0, thread.largest_impulse);
@@ -384,7 +384,7 @@ void ContactSolver::solve(std::span<const Vec3> velocities, std::span<const Vec3
     for (int sweep = 0; sweep < num_sweeps; ++sweep) {
         const bool visits_all = sweep == 0 || sweep == num_sweeps - 1;
         for (Row& row : rows_)
-            if (visits_all || row.is_held || row.normal_impulse > 0.0) relax(row);
+            if (visits_all || row.is_bilateral || row.normal_impulse > 0.0) relax(row);
         for (ThreadRow& thread : thread_rows_) relax_thread(thread);
     }
     impulses_.assign(points_.size(), Vec3::Zero());

@@ -16,7 +16,7 @@
 namespace incise::contact {
 
 /// A share of a point that is a combination of nodes: x = sum of weight times x_node.
-struct Share {
+struct NodeWeight {
     NodeId node;
     std::uint32_t number;  ///< of the node in ContactSolver::nodes()
     double weight;
@@ -33,7 +33,7 @@ struct ContactPoint {
     /// True if the point is held: its relative position is to become 0 in all directions. Then
     /// `offset` is what it is now, m, and normal, gap and friction have no meaning. The segment of
     /// a thread is held too.
-    bool is_held = false;
+    bool is_bilateral = false;
     Vec3 offset = Vec3::Zero();
     /// Above it a point that is held slips, and another one is passed through, N.
     double largest_force = std::numeric_limits<double>::infinity();
@@ -66,7 +66,7 @@ class ContactSolver {
     /// Begins a point; its shares follow.
     void begin(const ContactPoint& point);
     /// Adds a share to the last point. Several shares of one node become one.
-    void add_share(NodeId node, double weight);
+    void add_weight(NodeId node, double weight);
     /// Vertices of the surface with their weights: at most four, the others have no weight.
     struct OnSurface {
         std::array<VertexId, 4> vertices = {};
@@ -86,9 +86,9 @@ class ContactSolver {
     const ContactPoint& point(std::size_t i) const { return points_[i]; }
     /// Returns the nodes of all points and threads, each once.
     std::span<const NodeId> nodes() const { return node_ids_; }
-    std::span<const Share> shares(std::size_t i) const {
-        const std::size_t end = i + 1 < begins_.size() ? begins_[i + 1] : shares_.size();
-        return std::span(shares_).subspan(begins_[i], end - begins_[i]);
+    std::span<const NodeWeight> weights(std::size_t i) const {
+        const std::size_t end = i + 1 < begins_.size() ? begins_[i + 1] : weights_.size();
+        return std::span(weights_).subspan(begins_[i], end - begins_[i]);
     }
 
     /// Finds impulses such that gaps that are open do not become negative in the step, and overlaps
@@ -131,7 +131,7 @@ class ContactSolver {
     /// What a point needs in each sweep.
     struct Row {
         std::uint32_t point, begin, end;  // of its shares
-        bool is_held;
+        bool is_bilateral;
         double friction, largest_impulse;  // the latter in N s
         double allowed;                    // approach, m/s
         double hardness, all_hardness;     // impulse for a change of the relative velocity, kg:
@@ -170,11 +170,11 @@ class ContactSolver {
     double rounding_of_length_, largest_correction_;
     std::vector<ContactPoint> points_;
     std::vector<std::size_t> begins_;  // by point, of its shares
-    std::vector<Share> shares_;
+    std::vector<NodeWeight> weights_;
     std::vector<std::pair<std::size_t, OnSurface>> on_surface_;  // with the numbers of points
     std::vector<NodeId> node_ids_;                               // by number
     std::vector<std::int32_t> number_by_id_;                     // by node id, -1: none
-    std::vector<std::size_t> last_shares_;  // by number, the last share of the node
+    std::vector<std::size_t> last_weights_;  // by number, the last share of the node
     std::vector<Vec3> impulses_;
     // Scratch of solve().
     std::vector<Node> nodes_;                // by number

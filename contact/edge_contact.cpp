@@ -437,7 +437,7 @@ void EdgeContact::add_points(const physics::Model& model, const Surface& surface
         solver.begin(point);
         const auto& [p, q] = edges_[pair.edges.sharp].nodes;
         const auto& [a, b] = edges_[pair.edges.other].nodes;
-        add_surface_shares(
+        add_surface_weights(
             model,
             {{p, q, a, b},
              {1.0 - touch.on_first, touch.on_first, touch.on_second - 1.0, -touch.on_second}},

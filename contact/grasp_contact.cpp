@@ -61,17 +61,17 @@ std::optional<Vec3> middle_within(const cutting::Cuboid& box, const std::array<V
 
 }  // namespace
 
-Vec3 GraspContact::position_of(const Held& held, std::span<const Vec3> positions) const {
+Vec3 GraspContact::position_of(const Gripped& gripped, std::span<const Vec3> positions) const {
     Vec3 x = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k)
-        x += held.weights[static_cast<int>(k)] * positions[held.nodes[k].index()];
+        x += gripped.weights[static_cast<int>(k)] * positions[gripped.nodes[k].index()];
     return x;
 }
 
 void GraspContact::close(const physics::Model& model, const TissueSurface& surface,
                          const Pose& pose) {
     const std::span<const Vec3> positions = model.mesh_positions();
-    held_.clear();
+    gripped_.clear();
     std::map<VertexId, int> nodes;  // with their regions
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
         for (const VertexId n : surface.triangles[t]) {
@@ -80,8 +80,8 @@ void GraspContact::close(const physics::Model& model, const TissueSurface& surfa
                 nodes.emplace(n, model.mesh().region(surface.faces[t].cell));
         }
     for (const auto& [n, region] : nodes)
-        held_.push_back({{n, n, n}, Vec3::UnitX(), pose.to_tool(positions[n.index()]), region});
-    if (!held_.empty()) return;
+        gripped_.push_back({{n, n, n}, Vec3::UnitX(), pose.to_tool(positions[n.index()]), region});
+    if (!gripped_.empty()) return;
     // Jaws between nodes hold a point of each triangle that they meet.
     const auto* box = std::get_if<cutting::Cuboid>(&grasper_.jaws);
     const cutting::ProbeShape shape =
@@ -99,20 +99,20 @@ void GraspContact::close(const physics::Model& model, const TissueSurface& surfa
         for (const RigidTouch& touch : touches) {
             // A point on an edge belongs to several triangles. The two sides of a closed cut have
             // points at the same place, and no common nodes.
-            const bool is_known = std::ranges::any_of(held_, [&](const Held& held) {
-                return (held.place - touch.point).norm() < 1e-9 * size_ &&
-                       std::ranges::find_first_of(held.nodes, triangle) != held.nodes.end();
+            const bool is_known = std::ranges::any_of(gripped_, [&](const Gripped& gripped) {
+                return (gripped.place - touch.point).norm() < 1e-9 * size_ &&
+                       std::ranges::find_first_of(gripped.nodes, triangle) != gripped.nodes.end();
             });
             if (!is_known)
-                held_.push_back({triangle, touch.weights, touch.point,
-                                 model.mesh().region(surface.faces[t].cell)});
+                gripped_.push_back({triangle, touch.weights, touch.point,
+                                    model.mesh().region(surface.faces[t].cell)});
         }
     }
 }
 
 void GraspContact::follow(const physics::Model& model) {
-    std::erase_if(held_, [&](const Held& held) {
-        return std::ranges::any_of(held.nodes,
+    std::erase_if(gripped_, [&](const Gripped& gripped) {
+        return std::ranges::any_of(gripped.nodes,
                                    [&](VertexId n) { return !model.mesh().is_alive(n); });
     });
 }
@@ -121,51 +121,51 @@ void GraspContact::add_points(const physics::Model& model, const TissueSurface& 
                               double dt, ContactSolver& solver) {
     const std::span<const Vec3> positions = model.mesh_positions();
     first_point_ = solver.size();
-    for (Held& held : held_) {
-        const Vec3 x = position_of(held, positions), here = before_.to_world(held.place);
+    for (Gripped& gripped : gripped_) {
+        const Vec3 x = position_of(gripped, positions), here = before_.to_world(gripped.place);
         ContactPoint point;
-        point.is_held = true;
+        point.is_bilateral = true;
         point.offset = x - here;
-        point.velocity = (after_.to_world(held.place) - here) / dt;
-        point.impulse = held.impulse;
-        point.largest_force = grasper_.max_force / static_cast<double>(held_.size());
+        point.velocity = (after_.to_world(gripped.place) - here) / dt;
+        point.impulse = gripped.impulse;
+        point.largest_force = grasper_.max_force / static_cast<double>(gripped_.size());
         solver.begin(point);
-        const auto& [a, b, c] = held.nodes;
-        const Vec3& weights = held.weights;
-        add_surface_shares(model, {{a, b, c, {}}, {weights[0], weights[1], weights[2], 0.0}},
-                           solver);
+        const auto& [a, b, c] = gripped.nodes;
+        const Vec3& weights = gripped.weights;
+        add_surface_weights(model, {{a, b, c, {}}, {weights[0], weights[1], weights[2], 0.0}},
+                            solver);
     }
 }
 
 ToolImpulse GraspContact::take_impulses(const ContactSolver& solver, double dt) {
     ToolImpulse sum;
     points_.clear();
-    for (std::size_t i = 0; i < held_.size(); ++i) {
-        Held& held = held_[i];
+    for (std::size_t i = 0; i < gripped_.size(); ++i) {
+        Gripped& gripped = gripped_[i];
         const ContactPoint& point = solver.point(first_point_ + i);
-        held.impulse = solver.impulse(first_point_ + i);
-        sum.force += held.impulse;
-        sum.torque += (before_.to_world(held.place) - before_.position).cross(held.impulse);
-        sum.work += held.impulse.dot(point.velocity);
-        if (!held.impulse.isZero(0.0))
-            points_.push_back({before_.to_world(held.place), Vec3::Zero(), 0.0, Vec3::Zero(),
-                               -held.impulse / dt, held.region});
+        gripped.impulse = solver.impulse(first_point_ + i);
+        sum.force += gripped.impulse;
+        sum.torque += (before_.to_world(gripped.place) - before_.position).cross(gripped.impulse);
+        sum.work += gripped.impulse.dot(point.velocity);
+        if (!gripped.impulse.isZero(0.0))
+            points_.push_back({before_.to_world(gripped.place), Vec3::Zero(), 0.0, Vec3::Zero(),
+                               -gripped.impulse / dt, gripped.region});
         // A point that slips is held where it has come to.
-        if (held.impulse.norm() >= slips_at * point.largest_force * dt)
-            held.place = before_.to_tool(before_.to_world(held.place) + point.offset);
+        if (gripped.impulse.norm() >= slips_at * point.largest_force * dt)
+            gripped.place = before_.to_tool(before_.to_world(gripped.place) + point.offset);
     }
-    std::erase_if(held_, [&](const Held& held) {
-        return distance_from(grasper_.jaws, held.place) > let_go_at * size_;
+    std::erase_if(gripped_, [&](const Gripped& gripped) {
+        return distance_from(grasper_.jaws, gripped.place) > let_go_at * size_;
     });
     return sum;
 }
 
 void GraspContact::restore(ArchiveReader& ar, const physics::Model& model) {
     list(ar, *this);
-    for (const Held& held : held_) {
-        const bool fits = held.weights.allFinite() && held.place.allFinite() &&
-                          held.impulse.allFinite() &&
-                          std::ranges::all_of(held.nodes, [&](VertexId n) {
+    for (const Gripped& gripped : gripped_) {
+        const bool fits = gripped.weights.allFinite() && gripped.place.allFinite() &&
+                          gripped.impulse.allFinite() &&
+                          std::ranges::all_of(gripped.nodes, [&](VertexId n) {
                               return n.is_valid() && n.index() < model.mesh().node_capacity() &&
                                      model.mesh().is_alive(n);
                           });

@@ -38,13 +38,13 @@ class GraspContact final : public ToolContact {
     /// triangles.
     void close(const physics::Model& model, const TissueSurface& surface, const Pose& pose);
     void open() {
-        held_.clear();
+        gripped_.clear();
         points_.clear();
     }
-    std::size_t num_held() const { return held_.size(); }
+    std::size_t num_gripped() const { return gripped_.size(); }
     /// Lets go what an edit has removed.
     void follow(const physics::Model& model) override;
-    /// The points are those that are held.
+    /// The points are those that are gripped.
     void add_points(const physics::Model& model, const TissueSurface& surface, double dt,
                     ContactSolver& solver) override;
     ToolImpulse take_impulses(const ContactSolver& solver, double dt) override;
@@ -55,7 +55,7 @@ class GraspContact final : public ToolContact {
 
   private:
     /// A point of the surface.
-    struct Held {
+    struct Gripped {
         std::array<VertexId, 3> nodes;  ///< of the mesh
         Vec3 weights;                   ///< of them; a node has the weight 1
         Vec3 place;                     ///< in the frame of the jaws, m
@@ -65,13 +65,13 @@ class GraspContact final : public ToolContact {
             ar(self.nodes, self.weights, self.place, self.region, self.impulse);
         }
     };
-    static void list(auto& ar, auto& self) { ar(self.held_); }
-    Vec3 position_of(const Held& held, std::span<const Vec3> positions) const;
+    static void list(auto& ar, auto& self) { ar(self.gripped_); }
+    Vec3 position_of(const Gripped& gripped, std::span<const Vec3> positions) const;
 
     cutting::Grasper grasper_;
     double size_;
     Pose before_, after_;
-    std::vector<Held> held_;
+    std::vector<Gripped> gripped_;
     std::size_t first_point_ = 0;  // in the solver
 };
 

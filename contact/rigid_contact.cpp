@@ -116,8 +116,8 @@ void RigidContact::add_points(const physics::Model& model, const TissueSurface& 
         solver.begin(point);
         const auto& [a, b, c] = surface.triangles[t];
         const Vec3& weights = touch.weights;
-        add_surface_shares(model, {{a, b, c, {}}, {weights[0], weights[1], weights[2], 0.0}},
-                           solver);
+        add_surface_weights(model, {{a, b, c, {}}, {weights[0], weights[1], weights[2], 0.0}},
+                            solver);
     }
 }
 

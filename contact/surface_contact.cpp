@@ -46,11 +46,11 @@ constexpr double rounding = 1e-10;
 
 void add_shares(const physics::Model& model, VertexId n, double weight, ContactSolver& solver) {
     model.embedding()[n].for_each(
-        [&](NodeId node, double share) { solver.add_share(node, weight * share); });
+        [&](NodeId node, double share) { solver.add_weight(node, weight * share); });
 }
 
-void add_surface_shares(const physics::Model& model, const ContactSolver::OnSurface& at,
-                        ContactSolver& solver) {
+void add_surface_weights(const physics::Model& model, const ContactSolver::OnSurface& at,
+                         ContactSolver& solver) {
     solver.note_surface(at);
     for (std::size_t k = 0; k < at.vertices.size(); ++k)
         if (at.weights[k] != 0.0) add_shares(model, at.vertices[k], at.weights[k], solver);
@@ -163,8 +163,7 @@ void SurfaceContact::list_lengths(const physics::Model& model) {
 
 // Near the edit, pairs are found anew. Those of other nodes stay, with the new numbers of
 // triangles.
-void SurfaceContact::know_surface(const physics::Model& model,
-                                  const topology::BoundarySurface& surface) {
+void SurfaceContact::follow(const physics::Model& model, const topology::BoundarySurface& surface) {
     const std::vector<FaceId> old_faces = std::move(faces_);
     const std::vector<Triangle> old_triangles = std::move(triangles_);
     const std::span<const Vec3> positions = model.mesh_positions();
@@ -484,7 +483,7 @@ void SurfaceContact::add_point(std::size_t i, const physics::Model& model, Conta
     nodes_of_points_.push_back(i);
     solver.begin(point);
     const auto& [a, b, c] = triangles_[static_cast<std::size_t>(near.touched)];
-    add_surface_shares(
+    add_surface_weights(
         model,
         {{pairs_.nodes()[i], a, b, c}, {1.0, -at.weights[0], -at.weights[1], -at.weights[2]}},
         solver);

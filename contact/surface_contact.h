@@ -21,8 +21,8 @@ namespace incise::contact {
 /// Adds the shares of the nodes that a vertex follows to the last point of a solver.
 void add_shares(const physics::Model& model, VertexId v, double weight, ContactSolver& solver);
 /// The same for a point of the surface, with what ContactSolver::surface_impulses() needs.
-void add_surface_shares(const physics::Model& model, const ContactSolver::OnSurface& at,
-                        ContactSolver& solver);
+void add_surface_weights(const physics::Model& model, const ContactSolver::OnSurface& at,
+                         ContactSolver& solver);
 
 /// Points of contact of the surface of a body with itself.
 ///
@@ -36,12 +36,12 @@ class SurfaceContact {
 
     /// Begins with the surface of a body, or follows the edits of a step. Cost: O(n log n) in the
     /// triangles of the surface, and that of the pairs near the edits.
-    void know_surface(const physics::Model& model, const topology::BoundarySurface& surface);
+    void follow(const physics::Model& model, const topology::BoundarySurface& surface);
     /// Finds the points of contact at the present positions, and adds them to the solver.
     /// Cost: proportional to the nodes that are near another surface. Now and then, when a part of
     /// the surface has moved by a part of an element, O(n) in the surface and the search for the
     /// pairs of this part; O(n log n) if all of it has.
-    /// @pre  know_surface() was called after the last edit
+    /// @pre  follow() was called after the last edit
     void add_points(const physics::Model& model, ContactSolver& solver);
     /// Takes the impulses of the points that add_points() added: the next step begins with them.
     void take_impulses(const ContactSolver& solver);

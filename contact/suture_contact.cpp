@@ -65,7 +65,7 @@ void SutureContact::add_points(const physics::Model& model, const TissueSurface&
     solver.begin_thread({length_, suture_.stiffness, suture_.max_force, tension_ * dt});
     const auto add_end = [&](const topology::CellPoint& at, double sign) {
         model.embedding().for_each(model.mesh(), at, [&](NodeId node, double weight) {
-            solver.add_share(node, sign * weight);
+            solver.add_weight(node, sign * weight);
         });
     };
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {

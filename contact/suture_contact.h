@@ -34,7 +34,7 @@ class SutureContact final : public ToolContact {
     /// Returns the length of the thread without tension, m.
     double length() const { return length_; }
     /// Returns through how many points the thread passes. It pulls if there are two or more.
-    std::size_t num_held() const { return stitches_.size(); }
+    std::size_t num_gripped() const { return stitches_.size(); }
     /// Follows an edit. A point that an edit has removed is left out from then on.
     void follow(const physics::Model& model) override;
     /// Adds the thread to the solver.

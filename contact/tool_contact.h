@@ -9,20 +9,11 @@
 #include "incise/base/archive.h"
 #include "incise/contact/contact_solver.h"
 #include "incise/contact/surface_tree.h"
+#include "incise/contact/tool_contact_point.h"
 #include "incise/contact/tool_impulse.h"
 #include "incise/physics/body/model.h"
 
 namespace incise::contact {
-
-/// A point at which tissue exerts a force on a tool, in the last part of a step.
-struct ToolContactPoint {
-    Vec3 point;           ///< on the tool, at the beginning of the part, m
-    Vec3 normal;          ///< of unit length, from the tissue to the tool; zero in jaws
-    double depth;         ///< by which both overlap there, m; below 0: they meet in the part
-    Vec3 normal_force;    ///< on the tool along the normal, N
-    Vec3 friction_force;  ///< on the tool, N: the rest; in jaws all of it
-    int region;           ///< of the tissue
-};
 
 /// The contact of a tool that is there with the tissue. Each kind of contact adds its points to the
 /// solver of a step, and takes their impulses after it.
@@ -48,8 +39,8 @@ class ToolContact {
     /// Writes what the next step begins with. Each kind has a restore() of its own.
     virtual void save(ArchiveWriter& ar) const = 0;
 
-    /// Returns the points with a force in the last part of a step. Threads and blades, whose force
-    /// is not at points, have none. A restore() leaves none.
+    /// Returns the points with a force in the last substep of a step. Threads and blades, whose
+    /// force is not at points, have none. A restore() leaves none.
     std::span<const ToolContactPoint> points() const { return points_; }
 
     /// Counts what the tool has exerted in a step.

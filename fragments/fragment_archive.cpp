@@ -21,7 +21,7 @@ class FragmentArchive {
     static void list(auto& ar, auto& f) {
         ar(f.light_share_, f.num_origins_, f.kinds_, f.regions_, f.origins_of_carrier_, f.carriers_,
            f.is_alive_, f.shares_, f.corners_, f.origins_, f.rest_positions_, f.is_node_alive_,
-           f.carrier_of_cell_, f.fragment_of_cell_, f.carried_around_, f.is_held_);
+           f.carrier_of_cell_, f.fragment_of_cell_, f.carried_around_, f.is_constrained_);
     }
 
     static FragmentMesh load(const Mesh& material, ArchiveReader& ar) {
@@ -52,7 +52,7 @@ class FragmentArchive {
                     num_fragments >= num_carriers && f.is_alive_.size() == num_fragments &&
                     f.shares_.size() == num_fragments && f.rest_positions_.size() == num_nodes &&
                     f.is_node_alive_.size() == num_nodes &&
-                    f.is_held_.size() == material_.node_capacity() &&
+                    f.is_constrained_.size() == material_.node_capacity() &&
                     f.carrier_of_cell_.size() == material_.element_capacity() &&
                     f.fragment_of_cell_.size() == material_.element_capacity(),
                 "lists of different lengths");

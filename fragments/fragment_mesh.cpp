@@ -43,8 +43,8 @@ std::vector<NodeId> lowest_at_same_position(std::span<const Vec3> rest_positions
 
 FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<const VertexId> held)
     : FragmentMesh(light_share, FollowedEpoch(material)) {
-    is_held_.assign(material.node_capacity(), 0);
-    hold(held);
+    is_constrained_.assign(material.node_capacity(), 0);
+    constrain(held);
     const Carriers& source = material.source_carriers();
     const std::vector<NodeId> corners_of_source = add_nodes(material);
     std::vector<CarrierId> carrier_of_row(source.corners.size());
@@ -139,23 +139,24 @@ void FragmentMesh::complete() {
 FragmentChanges FragmentMesh::apply(const Mesh& material, const ChangeSet& changes) {
     if (changes.is_empty()) return {};
     epoch_.advance(material, changes, "fragment mesh");
-    hold_new_nodes(changes);
+    constrain_new_nodes(changes);
     return FragmentUpdate(*this, material, changes).run();
 }
 
-void FragmentMesh::hold(std::span<const VertexId> vertices) {
-    std::ranges::fill(is_held_, 0);
-    for (const VertexId v : vertices) is_held_[v.index()] = 1;
+void FragmentMesh::constrain(std::span<const VertexId> vertices) {
+    std::ranges::fill(is_constrained_, 0);
+    for (const VertexId v : vertices) is_constrained_[v.index()] = 1;
 }
 
-void FragmentMesh::hold_new_nodes(const ChangeSet& changes) {
-    is_held_.resize(changes.node_capacity_after, 0);
+void FragmentMesh::constrain_new_nodes(const ChangeSet& changes) {
+    is_constrained_.resize(changes.node_capacity_after, 0);
     for (const VertexRecord& record : changes.nodes_added) {
         if (record.id.index() < changes.node_capacity_before) continue;  // an undo brings it back
         const auto sources =
             std::span(record.sources).first(static_cast<std::size_t>(record.num_sources));
-        is_held_[record.id.index()] = std::ranges::all_of(
-            sources, [&](const VertexRecord::Source& source) { return is_held(source.node); });
+        is_constrained_[record.id.index()] = std::ranges::all_of(
+            sources,
+            [&](const VertexRecord::Source& source) { return is_constrained(source.node); });
     }
 }
 
@@ -203,7 +204,7 @@ void FragmentMesh::go_back(const Mesh& material, const FragmentChanges& back) {
     num_nodes_ += edit.nodes_added.size();
     num_nodes_ -= edit.nodes_removed.size();
     truncate(edit.node_capacity_after, edit.element_capacity_after, material.element_capacity());
-    is_held_.resize(material.node_capacity());
+    is_constrained_.resize(material.node_capacity());
 }
 
 void FragmentMesh::truncate(std::size_t num_nodes, std::size_t num_elements,

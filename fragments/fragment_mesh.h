@@ -37,7 +37,7 @@ inline constexpr double default_light_share = 0.2;
 /// A node of the carrier has as many copies as its fragments have connected groups. Two fragments
 /// are connected at a node if cells of theirs share a face in a face of their carriers at the node.
 /// A *light* fragment is no element of its own: another fragment carries its cells. It has little
-/// volume, and nothing holds it: see default_light_share and hold().
+/// volume, and nothing holds it: see default_light_share and constrain().
 ///
 /// A body without cuts has one carrier and one fragment for each cell and one node for each vertex,
 /// with the same numbers. Fragments and nodes that edits add have numbers of their own.
@@ -48,7 +48,7 @@ class FragmentMesh {
     /// was written. Their ids, and those of their nodes, can be others. Cost: O(n log n).
     /// @param material     the body as it was built, before its first edit
     /// @param light_share  see default_light_share; with 0 no fragment is light
-    /// @param held         see hold()
+    /// @param held         see constrain()
     explicit FragmentMesh(const topology::Mesh& material, double light_share = default_light_share,
                           std::span<const VertexId> held = {});
 
@@ -56,7 +56,7 @@ class FragmentMesh {
     /// at one of them is light, so that it stays where it is held. A vertex that an edit makes of
     /// held ones only is held as well. Fragments that exist stay as they are until an edit beside
     /// them.
-    void hold(std::span<const VertexId> vertices);
+    void constrain(std::span<const VertexId> vertices);
     /// Follows an edit of the material, and returns what it did to the fragments.
     /// Throws InputError, and changes nothing, for an edit out of turn.
     /// Cost: proportional to the elements at the nodes of the carriers that the edit touches.
@@ -91,20 +91,21 @@ class FragmentMesh {
     }
     /// Returns which corner of `e` the node is; -1 if it is none.
     int corner_of(ElementId e, NodeId n) const;
-    /// True if the position of a node of the material is prescribed; see hold().
-    bool is_held(VertexId n) const { return is_held_[n.index()] != 0; }
-    /// Returns is_held() of all vertices, and sets it again.
-    /// @pre  set_held(): there is one for each vertex of the material, also for those removed
-    std::span<const std::uint8_t> held() const { return is_held_; }
-    void set_held(std::vector<std::uint8_t> held) { is_held_ = std::move(held); }
+    /// True if the position of a node of the material is prescribed; see constrain().
+    bool is_constrained(VertexId n) const { return is_constrained_[n.index()] != 0; }
+    /// Returns is_constrained() of all vertices, and sets it again.
+    /// @pre  set_constrained(): there is one for each vertex of the material, also for those
+    /// removed
+    std::span<const std::uint8_t> constrained() const { return is_constrained_; }
+    void set_constrained(std::vector<std::uint8_t> held) { is_constrained_ = std::move(held); }
     /// Returns the volume that the fragment carries over that of its carrier. It is exactly 1 for a
     /// carrier that is whole, or cut in part. It exceeds 1 if cells of others outweigh those that
     /// are missing.
-    double share(ElementId e) const { return shares_[e.index()]; }
+    double volume_share(ElementId e) const { return shares_[e.index()]; }
     /// Returns the volume of the carrier at rest, m3.
     double carrier_volume(ElementId e) const { return volumes_[carriers_[e.index()].index()]; }
     /// Returns the volume of the material that the fragment carries, at rest, m3.
-    double volume(ElementId e) const { return share(e) * carrier_volume(e); }
+    double volume(ElementId e) const { return volume_share(e) * carrier_volume(e); }
     const Vec3& rest_position(NodeId n) const { return rest_positions_[n.index()]; }
     std::span<const Vec3> rest_positions() const { return rest_positions_; }
     /// Returns the node before any cut that the node is, or of which it is a copy. Of several ones
@@ -173,8 +174,8 @@ class FragmentMesh {
                (!is_alive(first) && fragment_of_cell_[carrier.index()] == first);
     }
 
-    /// Follows the nodes that an edit of the material adds: see is_held().
-    void hold_new_nodes(const topology::ChangeSet& changes);
+    /// Follows the nodes that an edit of the material adds: see is_constrained().
+    void constrain_new_nodes(const topology::ChangeSet& changes);
     void truncate(std::size_t num_nodes, std::size_t num_elements, std::size_t num_cells);
     /// Moves a cell from the list of one fragment to that of another; either may be invalid.
     void move_cell(CellId cell, ElementId from, ElementId to);
@@ -249,7 +250,7 @@ class FragmentMesh {
     std::vector<CarrierId> carrier_of_cell_;
     std::vector<ElementId> fragment_of_cell_;
     std::unordered_set<CellId> carried_around_;
-    std::vector<std::uint8_t> is_held_;  // by node of the material, also if it is dead
+    std::vector<std::uint8_t> is_constrained_;  // by node of the material, also if it is dead
     // Scratch of FragmentParts, -1 between edits: by cell its part, by carrier its first part.
     std::vector<std::int32_t> part_of_cell_, first_part_;
 

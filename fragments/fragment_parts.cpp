@@ -13,7 +13,7 @@ using topology::rest_volume;
 
 FragmentParts::~FragmentParts() {
     for (const CarrierId carrier : carriers_found_) fragments_.first_part_[carrier.index()] = -1;
-    for (const Part* part : parts_)
+    for (const CarrierPart* part : parts_)
         for (const CellId cell : part->cells) fragments_.part_of_cell_[cell.index()] = -1;
 }
 
@@ -49,10 +49,10 @@ double FragmentParts::share_of(std::size_t part) {
     return count == 1 ? 1.0 : parts_[part]->volume / all;
 }
 
-bool FragmentParts::is_held(std::span<const CellId> cells) const {
+bool FragmentParts::is_constrained(std::span<const CellId> cells) const {
     for (const CellId cell : cells)
         for (const VertexId n : material_.corners(cell))
-            if (fragments_.is_held(n)) return true;
+            if (fragments_.is_constrained(n)) return true;
     return false;
 }
 
@@ -61,12 +61,13 @@ void FragmentParts::add(CarrierId carrier, std::span<const CellId> cells, double
     for (const CellId cell : cells)
         fragments_.part_of_cell_[cell.index()] = static_cast<std::int32_t>(index);
     // Nothing frees a part: its lists are in the same memory.
-    Part& part = *new (memory_.allocate(sizeof(Part), alignof(Part))) Part(memory_);
+    CarrierPart& part =
+        *new (memory_.allocate(sizeof(CarrierPart), alignof(CarrierPart))) CarrierPart(memory_);
     part.carrier = carrier;
     part.volume = volume;
     part.master = index;
     part.is_light = volume < fragments_.light_share_ * fragments_.volumes_[carrier.index()];
-    part.is_held = part.is_light && is_held(cells);
+    part.is_constrained = part.is_light && is_constrained(cells);
     // A part that no edit has touched is carried as before.
     part.fragment = fragments_.fragment_of_cell(cells.front());
     part.is_element = fragments_.is_own(cells.front());
@@ -112,7 +113,7 @@ void FragmentParts::find(CarrierId carrier) {
 }
 
 std::span<const FragmentParts::Neighbor> FragmentParts::neighbors(std::size_t index) {
-    Part& part = *parts_[index];
+    CarrierPart& part = *parts_[index];
     assert(part.is_light);
     if (part.has_neighbors) return part.neighbors;
     part.has_neighbors = true;
@@ -134,7 +135,7 @@ std::span<const FragmentParts::Neighbor> FragmentParts::neighbors(std::size_t in
 }
 
 /// Returns the cells of other carriers that share faces with a part, one for each face.
-std::span<const CellId> FragmentParts::cells_beyond(Part& part) {
+std::span<const CellId> FragmentParts::cells_beyond(CarrierPart& part) {
     if (part.has_beyond) return part.beyond;
     part.has_beyond = true;
     for (const CellId cell : part.cells)
@@ -196,7 +197,7 @@ std::vector<CarrierId> FragmentParts::join_light(std::span<const CarrierId> touc
     std::sort(open.begin(), open.end());
     open.erase(std::unique(open.begin(), open.end()), open.end());
     const std::vector<std::size_t> cluster = lights;
-    std::erase_if(lights, [&](std::size_t part) { return parts_[part]->is_held; });
+    std::erase_if(lights, [&](std::size_t part) { return parts_[part]->is_constrained; });
     join_in_rounds(lights);
     join_larger_lights(lights);
     keep_bridges(cluster);

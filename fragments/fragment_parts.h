@@ -22,7 +22,7 @@ class FragmentParts {
         std::size_t part;
         double area;  // of the shared faces, at rest, m2
     };
-    struct Part {
+    struct CarrierPart {
         CarrierId carrier;
         std::pmr::vector<CellId> cells;        // in ascending order
         std::pmr::vector<Neighbor> neighbors;  // see neighbors()
@@ -32,7 +32,7 @@ class FragmentParts {
         ElementId fragment;       // that carries it
         std::int32_t local = -1;  // scratch of users
         bool is_light = false;
-        bool is_held = false;           // is light, and has material at a node that is held
+        bool is_constrained = false;    // is light, and has material at a node that is held
         bool is_element = false;        // see FragmentMesh::is_own()
         bool has_neighbors = false;     // found
         bool has_beyond = false;        // found
@@ -42,7 +42,7 @@ class FragmentParts {
         bool is_open = false;           // of a carrier that join_light() returned; set by users
         CellId head() const { return cells.front(); }
 
-        explicit Part(std::pmr::memory_resource& memory)
+        explicit CarrierPart(std::pmr::memory_resource& memory)
             : cells(&memory), neighbors(&memory), beyond(&memory) {}
     };
     /// The parts from `begin` to before `end`.
@@ -57,7 +57,7 @@ class FragmentParts {
     FragmentParts(const FragmentParts&) = delete;
     FragmentParts& operator=(const FragmentParts&) = delete;
 
-    Part& operator[](std::size_t part) { return *parts_[part]; }
+    CarrierPart& operator[](std::size_t part) { return *parts_[part]; }
     /// Returns the parts of a carrier. References to parts stay valid.
     Range of(CarrierId carrier);
     /// Returns the part of a living cell.
@@ -89,8 +89,8 @@ class FragmentParts {
 
   private:
     void find(CarrierId carrier);
-    bool is_held(std::span<const CellId> cells) const;
-    std::span<const CellId> cells_beyond(Part& part);
+    bool is_constrained(std::span<const CellId> cells) const;
+    std::span<const CellId> cells_beyond(CarrierPart& part);
     void add(CarrierId carrier, std::span<const CellId> cells, double volume);
     std::vector<std::size_t> light_cluster(std::span<const CarrierId> touched,
                                            std::span<const CarrierId> parted);
@@ -105,7 +105,7 @@ class FragmentParts {
     void keep_together(const std::vector<std::size_t>& lights);
     DisjointSet connected_elements(const std::vector<std::size_t>& near);
     bool is_element(std::size_t part) const {
-        const Part& of = *parts_[part];
+        const CarrierPart& of = *parts_[part];
         return of.is_in_cluster ? of.master == part : of.is_element || !of.is_light;
     }
 
@@ -113,7 +113,7 @@ class FragmentParts {
     const topology::Mesh& material_;
     std::vector<CarrierId> carriers_found_;       // whose parts are known
     std::pmr::monotonic_buffer_resource memory_;  // of the parts
-    std::vector<Part*> parts_;                    // those of a carrier follow each other
+    std::vector<CarrierPart*> parts_;             // those of a carrier follow each other
     std::vector<CellId> cells_, members_;         // scratch of find()
 };
 

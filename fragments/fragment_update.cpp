@@ -133,7 +133,7 @@ void FragmentUpdate::assign_fragments_of(CarrierId carrier) {
     for (const ElementId e : before) note_corners(e);
     std::vector<ElementId> now;
     for (auto [i, end] = parts_.of(carrier); i < end; ++i) {
-        Part& part = parts_[i];
+        CarrierPart& part = parts_[i];
         part.is_open = true;
         part.is_element = part.master == i;
         if (!part.is_element) continue;
@@ -159,7 +159,7 @@ void FragmentUpdate::assign_fragments_of(CarrierId carrier) {
 /// Writes which fragment carries each cell.
 void FragmentUpdate::carry_cells() {
     const auto list_of = [&](ElementId e) -> std::vector<CellId>& {
-        shares_before_.try_emplace(e, fragments_.share(e));
+        shares_before_.try_emplace(e, fragments_.volume_share(e));
         return fragments_.entry_of(fragments_.cells_of_fragment_, e);
     };
     const auto leave = [&](CellId cell) {
@@ -179,7 +179,7 @@ void FragmentUpdate::carry_cells() {
         for (auto [i, end] = parts_.of(carrier); i < end; ++i) {
             const ElementId to = parts_[parts_[i].master].fragment;
             const bool is_around = !parts_[i].is_element && fragments_.carrier(to) == carrier;
-            shares_before_.try_emplace(to, fragments_.share(to));  // a cell may have shrunk
+            shares_before_.try_emplace(to, fragments_.volume_share(to));  // a cell may have shrunk
             for (const CellId cell : parts_[i].cells) {
                 const ElementId from = fragments_.fragment_of_cell(cell);
                 if (is_added(cell))
@@ -240,7 +240,7 @@ NodeId FragmentUpdate::node_before(ElementId fragment, NodeId origin) const {
 
 /// Returns the node of an element at a corner before the edit. Fragments of carriers that are not
 /// open are as they were.
-NodeId FragmentUpdate::node_before(const Part& part, NodeId origin) const {
+NodeId FragmentUpdate::node_before(const CarrierPart& part, NodeId origin) const {
     return part.is_open ? node_before(part.fragment, origin)
                         : node_at(fragments_.corners(part.fragment), origin);
 }
@@ -449,8 +449,9 @@ FragmentChanges FragmentUpdate::differences() {
     std::ranges::sort(edit.rewired, {},
                       [](const auto& r) { return std::pair(r.element, r.corner); });
     for (const auto& [e, before] : shares_before_)
-        if (fragments_.is_alive(e) && fragments_.share(e) != before && !parent_of(e).is_valid())
-            result.shares.push_back({e, before, fragments_.share(e)});
+        if (fragments_.is_alive(e) && fragments_.volume_share(e) != before &&
+            !parent_of(e).is_valid())
+            result.shares.push_back({e, before, fragments_.volume_share(e)});
     std::ranges::sort(result.shares, {}, &ShareChange::fragment);
     std::ranges::sort(fragment_before_, {}, &CellBefore::cell);
     for (const auto& [cell, before, inherited, was_around] : fragment_before_) {

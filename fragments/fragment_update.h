@@ -31,7 +31,7 @@ class FragmentUpdate {
                        std::vector<CarrierId> carriers);
 
   private:
-    using Part = FragmentParts::Part;
+    using CarrierPart = FragmentParts::CarrierPart;
     /// Parts that are connected at a node before any cut, with the node that they get.
     struct Group {
         NodeId origin;
@@ -59,7 +59,7 @@ class FragmentUpdate {
                    : parents_[fragment.index() - element_capacity_before_];
     }
     NodeId node_before(ElementId fragment, NodeId origin) const;
-    NodeId node_before(const Part& part, NodeId origin) const;
+    NodeId node_before(const CarrierPart& part, NodeId origin) const;
     NodeId node_at(std::span<const NodeId> corners, NodeId origin) const;
     std::span<const NodeId> corners_before(ElementId fragment) const;
     void note_corners(ElementId fragment);

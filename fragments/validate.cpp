@@ -91,8 +91,8 @@ class FragmentCheck {
     }
 
     void check_fragment(ElementId e) {
-        if (!(fragments_.share(e) > 0.0 && std::isfinite(fragments_.share(e))))
-            report("fragment ", e.value, " has the share ", fragments_.share(e));
+        if (!(fragments_.volume_share(e) > 0.0 && std::isfinite(fragments_.volume_share(e))))
+            report("fragment ", e.value, " has the share ", fragments_.volume_share(e));
         if (fragments_.cells_of(e).empty()) report("fragment ", e.value, " has no element");
         for (const CellId cell : fragments_.cells_of(e))
             if (!mesh_.is_alive(cell) || fragments_.fragment_of_cell(cell) != e)

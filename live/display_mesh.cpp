@@ -12,7 +12,7 @@ DisplayMesh::DisplayMesh(const topology::Mesh& mesh) {
     regions_.assign(regions.begin(), regions.end());
 }
 
-void DisplayMesh::take(const topology::BoundarySurface& surface, const topology::Mesh& mesh) {
+void DisplayMesh::update(const topology::BoundarySurface& surface, const topology::Mesh& mesh) {
     nodes_.clear();
     tags_.clear();
     elements_.clear();

@@ -26,7 +26,7 @@ class DisplayMesh {
     explicit DisplayMesh(const topology::Mesh& mesh);
 
     /// Takes over the triangles of a surface. Cost: O(#triangles).
-    void take(const topology::BoundarySurface& surface, const topology::Mesh& mesh);
+    void update(const topology::BoundarySurface& surface, const topology::Mesh& mesh);
 
     std::span<const std::array<std::uint32_t, 3>> triangles() const { return triangles_; }
     /// Returns the node of each vertex.

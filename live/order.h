@@ -15,7 +15,7 @@ namespace incise::live {
 /// there. A suture has no pose: its thread is drawn through its points.
 struct AddTool {
     std::string name;            ///< that no other tool has
-    scenario::Value definition;  ///< see scenario::build_held_tool()
+    scenario::Value definition;  ///< see scenario::build_hand_tool()
     Pose pose = {};
 };
 /// Leads a tool: the pose is that at the end of the next tick.

@@ -156,7 +156,7 @@ std::vector<std::string> Session::execute(const Order& order) {
     return warnings;
 }
 
-scenario::HeldTool Session::checked(const AddTool& order) const {
+scenario::HandTool Session::checked(const AddTool& order) const {
     const sim::World& world = simulation_.world();
     if (order.name.empty()) throw InputError("a tool needs a name");
     if (world.find_tool(order.name))
@@ -165,7 +165,7 @@ scenario::HeldTool Session::checked(const AddTool& order) const {
     if (const auto* definition = order.definition.get<scenario::Table>())
         if (const scenario::Value* points = scenario::find(*definition, "points"))
             require_sensible(*points);
-    scenario::HeldTool built = scenario::build_held_tool(
+    scenario::HandTool built = scenario::build_hand_tool(
         order.definition, simulation_.scenario().folder, simulation_.mesh(), why_no_contact_);
     if (const auto extent = scenario::kind_of(built.shape).extent(built.shape)) {
         require_sensible(extent->radius);
@@ -178,7 +178,7 @@ scenario::HeldTool Session::checked(const AddTool& order) const {
 }
 
 std::vector<std::string> Session::add(const AddTool& order) {
-    scenario::HeldTool built = checked(order);
+    scenario::HandTool built = checked(order);
     sim::World& world = simulation_.world();
     LedTool tool{.name = order.name,
                  .kind = std::move(built.kind),
@@ -239,15 +239,15 @@ void Session::set_targets() {
     }
 }
 
-Session::Moment Session::moment() const {
-    return {num_ticks_, simulation_.moment(), tools_, orders_};
+Session::UndoPoint Session::undo_point() const {
+    return {num_ticks_, simulation_.undo_point(), tools_, orders_};
 }
 
-void Session::undo(const Moment& moment) {
-    simulation_.undo(moment.state);
-    num_ticks_ = moment.num_ticks;
-    tools_ = moment.tools;
-    orders_ = moment.orders;
+void Session::undo(const UndoPoint& point) {
+    simulation_.undo(point.state);
+    num_ticks_ = point.num_ticks;
+    tools_ = point.tools;
+    orders_ = point.orders;
     last_orders_.clear();
     player_ = {};
 }

@@ -13,7 +13,7 @@
 
 #include "incise/live/order.h"
 #include "incise/runner/simulation.h"
-#include "incise/scenario/held_tool.h"
+#include "incise/scenario/hand_tool.h"
 #include "incise/scenario/scenario.h"
 #include "incise/sim/tool_player.h"
 #include "incise/sim/world.h"
@@ -40,7 +40,7 @@ struct LedTool {
 /// The same orders between the same ticks give the same bits, on any number of threads: that is
 /// what a recording is (recording.h).
 ///
-/// A session can go back to a moment that it was in: moment(), undo(), reset().
+/// A session can go back to a moment that it was in: undo_point(), undo(), reset().
 class Session {
   public:
     /// Builds the body. Throws as runner::Simulation.
@@ -85,17 +85,17 @@ class Session {
     const sim::ToolForces& tool_forces() const { return player_.forces(); }
 
     /// A moment between two ticks.
-    struct Moment {
+    struct UndoPoint {
         std::uint64_t num_ticks;
-        runner::Simulation::Moment state;
+        runner::Simulation::UndoPoint state;
         std::vector<LedTool> tools;
         std::vector<Order> orders;  ///< executed since the last tick
     };
     /// Returns the present moment. Cost: as World::undo_point().
-    Moment moment() const;
+    UndoPoint undo_point() const;
     /// Goes back to a moment of this session; those after it are lost. The same bits go on.
     /// Throws InputError, and changes nothing, for a lost moment. Cost: as World::undo().
-    void undo(const Moment& moment);
+    void undo(const UndoPoint& point);
     /// Goes back to the start. All moments are lost. Cost: as World::restore().
     void reset();
 
@@ -103,7 +103,7 @@ class Session {
     std::uint64_t checksum() const;
 
   private:
-    scenario::HeldTool checked(const AddTool& order) const;
+    scenario::HandTool checked(const AddTool& order) const;
     std::vector<std::string> add(const AddTool& order);
     void move(const MoveTool& order);
     void require_within_reach(const Pose& pose) const;

@@ -38,7 +38,7 @@ A report keeps its values: later steps do not change it.)");
         .def_property_readonly("num_steps", held(&Report::num_steps),
                                "Number of steps of the call.")
         .def_property_readonly(
-            "num_parts", held(&Report::num_parts),
+            "num_substeps", held(&Report::num_substeps),
             "Number of explicit steps that these were divided into. More than num_steps\n"
             "where strain or a fast probe needs shorter ones.")
         .def_property_readonly(

@@ -141,7 +141,7 @@ InputError for a tool of the wrong kind, and incise.Error while another thread u
 
 During the call the tool goes there straight and by the shortest turn, and acts on all that it
 meets. A tool that is not there appears at the pose. Before a pose is set it is where the tool is;
-None for a tool that is not there.)")
+None for a tool that is not there. A call that is refused keeps the pose that was set: set another.)")
         .def_property_readonly("current_pose", held(+[](const Tool& tool) -> std::optional<Pose> {
                                    const sim::World& world = driver_of(tool).world();
                                    if (!world.is_tool_present(tool.id)) return std::nullopt;
@@ -247,12 +247,14 @@ Those of a scenario hold or move nodes as it says. A grasp carries nodes with a 
             }),
             R"(The force that the constraint exerted on the body, mean over the last step, N. Shape (3,).
 
+That of a tool is a mean over the last call.
+
 A grasp on moving tissue stops it within one step: leave out that step, or take a mean.)")
         .def_property_readonly(
             "torque", held(+[](const Constraint& constraint) {
-                return array_of(reaction_of(constraint).moment);
+                return array_of(reaction_of(constraint).torque);
             }),
-            "The moment that it exerted about the origin of the world, N m. Shape (3,), a copy.")
+            "The torque that it exerted about the origin of the world, N m. Shape (3,), a copy.")
         .def_property_readonly(
             "is_grasp", held(+[](const Constraint& constraint) {
                 return driver_of(constraint).grasp_pose(constraint.name).has_value();

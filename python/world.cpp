@@ -370,7 +370,8 @@ are held too. Raises InputError if another constraint holds a node otherwise.)")
 
 name: letters, digits, _ and -; no other constraint of the world has it.
 definition: a dict with the keys of [[constraint]] but name: where, fix, move, rotate, about. Nodes
-    are chosen where they rest, and move from there; times are those of the world. For nodes that
+    are chosen where they rest, and move from there; times are those of the world. The key `nodes`
+    of `where` has numbers of the mesh, not rows: of rows it is node_ids[rows]. For nodes that
     are elsewhere than it says an InciseWarning tells how far they jump: use grasp() to hold nodes
     where they are.
 Raises InputError with all faults of the definition, and if another constraint prescribes another

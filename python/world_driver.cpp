@@ -87,7 +87,7 @@ void WorldDriver::note(Report& report) {
     const sim::StepReport& step = world_.report();
     report.to = step.to;
     ++report.num_steps;
-    report.num_parts += step.num_parts;
+    report.num_substeps += step.num_substeps;
     report.contact = step.contact;
     report.max_penetration = std::max(report.max_penetration, step.contact.max_penetration);
     for (const sim::Edit& edit : step.edits) {

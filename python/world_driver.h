@@ -42,7 +42,7 @@ struct FeelingTools {
 struct Report {
     double from = 0.0, to = 0.0;  ///< s
     std::size_t num_steps = 0;
-    std::size_t num_parts = 0;  ///< explicit steps that these steps were divided into
+    std::size_t num_substeps = 0;  ///< explicit steps that these steps were divided into
     std::vector<sim::EditRecord> edits;
     std::shared_ptr<const FeelingTools> tools;  ///< those at the end
     std::vector<Vec3> forces, torques;          ///< by tool, means over the call, N and N m
@@ -93,7 +93,7 @@ class WorldDriver {
 
     bool is_scripted(sim::ToolId tool) const { return tool.index < scripts_.size(); }
     /// Adds a tool that the program leads. Throws InputError for a name that is taken or not
-    /// allowed, and as scenario::build_held_tool().
+    /// allowed, and as scenario::build_hand_tool().
     sim::ToolId add_tool(const std::string& name, const scenario::Value& definition,
                          const std::optional<Pose>& pose);
     /// Returns the pose that the tool has at the end of the next call, or now, if none is set.

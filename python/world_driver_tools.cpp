@@ -9,7 +9,7 @@
 #include "incise/python/world_driver.h"
 #include "incise/scenario/added_parts.h"
 #include "incise/scenario/diagnostics.h"
-#include "incise/scenario/held_tool.h"
+#include "incise/scenario/hand_tool.h"
 #include "incise/topology/mesh_metrics.h"
 
 namespace incise::python {
@@ -41,9 +41,9 @@ sim::ToolId WorldDriver::add_tool(const std::string& name, const scenario::Value
     if (world_.find_tool(name))
         throw InputError("tool '" + name + "': the world has a tool of this name already");
     if (pose) require_sound("tool '" + name + "'", *pose);
-    scenario::HeldTool held = [&] {
+    scenario::HandTool held = [&] {
         try {
-            return scenario::build_held_tool(
+            return scenario::build_hand_tool(
                 definition, scenario_.folder, world_.mesh(),
                 scenario::why_no_contact(scenario_.dynamics, scenario_.contact));
         } catch (const InputError& error) {
@@ -108,7 +108,7 @@ void WorldDriver::withdraw_tool(sim::ToolId tool) {
     if (!cutting::traits_of(def.shape).has_pose)
         throw InputError("tool '" + def.name + "' is a suture: use untie()");
     if (!tool_pose(tool)) throw InputError("tool '" + def.name + "' is not there to be withdrawn");
-    player_.targets().withdraw(tool);
+    player_.targets().withdraw(present(tool));
 }
 
 std::size_t WorldDriver::close(sim::ToolId tool) {
@@ -241,7 +241,9 @@ void WorldDriver::grasp(const std::string& name, std::vector<VertexId> nodes, co
 void WorldDriver::set_grasp_target(const std::string& name, const Pose& pose) {
     const sim::ConstraintId id = constraint(name);
     if (!world_.grasp_pose(id))
-        throw InputError("constraint '" + name + "' is no grasp: the scenario says how it moves");
+        throw InputError(
+            "constraint '" + name +
+            "' is no grasp: it moves as its definition says; change() gives it another one");
     require_sound("grasp '" + name + "'", pose);
     player_.targets().move(id, pose);
 }

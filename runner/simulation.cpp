@@ -114,15 +114,15 @@ void Simulation::restore(ArchiveReader& ar) {
     restore_run(ar);
 }
 
-Simulation::Moment Simulation::moment() const {
+Simulation::UndoPoint Simulation::undo_point() const {
     ArchiveWriter run;
     save_run(run);
     return {world_.undo_point(), run.take()};
 }
 
-void Simulation::undo(const Moment& moment) {
-    world_.undo(moment.world);
-    ArchiveReader run(moment.run);
+void Simulation::undo(const UndoPoint& point) {
+    world_.undo(point.world);
+    ArchiveReader run(point.run);
     restore_run(run);
 }
 

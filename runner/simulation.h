@@ -90,14 +90,14 @@ class Simulation {
     /// unusable. Cost: as World::restore().
     void restore(ArchiveReader& ar);
     /// A moment between two steps: see sim::UndoPoint.
-    struct Moment {
+    struct UndoPoint {
         sim::UndoPoint world;
         std::string run;  ///< what the run remembers beside the world
     };
     /// Returns the present moment. Cost: O(#nodes), and what records of the edits take.
-    Moment moment() const;
+    UndoPoint undo_point() const;
     /// Goes back to a moment of this run: see World::undo().
-    void undo(const Moment& moment);
+    void undo(const UndoPoint& point);
     /// Returns a checksum of the body at the start: mesh, fibres, and the files of surfaces of
     /// cuts.
     std::uint64_t fingerprint() const { return fingerprint_; }

@@ -10,7 +10,7 @@
 #include "incise/base/number_format.h"
 #include "incise/io/vtk/series.h"
 #include "incise/scenario/document_text.h"
-#include "incise/scenario/held_tool.h"
+#include "incise/scenario/hand_tool.h"
 #include "incise/scenario/quantities.h"
 #include "incise/scenario/scenario_sections.h"
 

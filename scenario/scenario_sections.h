@@ -56,7 +56,7 @@ std::vector<ToolSpec> read_tools(const TableReader& root, const std::filesystem:
                                  double end_time, const std::string& why_no_contact);
 /// Reads a tool that is led by hand: the keys of a [[tool]] without those that say when it is
 /// where, and without a name. The tool is named as its kind, and has no path.
-ToolSpec read_held_tool(const Table& table, const std::filesystem::path& folder,
+ToolSpec read_hand_tool(const Table& table, const std::filesystem::path& folder,
                         const std::string& why_no_contact, Diagnostics& diagnostics);
 /// Reads the [output] section.
 /// @param end_time    end of the run, s; not above 0 if not known

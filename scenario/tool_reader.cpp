@@ -148,7 +148,7 @@ const ToolKind* read_kind(const TableReader& tool) {
 
 }  // namespace
 
-ToolSpec read_held_tool(const Table& table, const std::filesystem::path& folder,
+ToolSpec read_hand_tool(const Table& table, const std::filesystem::path& folder,
                         const std::string& why_no_contact, Diagnostics& diagnostics) {
     const TableReader tool(table, SourceLocation{}, "", {all_keys()}, diagnostics);
     ToolSpec spec;

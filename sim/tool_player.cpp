@@ -24,17 +24,18 @@ void ToolPlayer::begin(const World& world) {
         grasps_.push_back(world.grasp_pose(target.grasp).value_or(target.pose));
 }
 
-const StepInputs& ToolPlayer::inputs(double part, bool is_last) {
+const StepInputs& ToolPlayer::inputs(double fraction, bool is_last) {
     inputs_.clear();
     for (std::size_t i = 0; i < tools_.size(); ++i) {
         const ToolInput& target = targets_.tools()[i];
         const auto& [pose, length, is_at_once] = tools_[i];
         if (target.pose)
-            inputs_.move(target.tool,
-                         is_last || !pose ? *target.pose : interpolate(*pose, *target.pose, part));
+            inputs_.move(target.tool, is_last || !pose
+                                          ? *target.pose
+                                          : interpolate(*pose, *target.pose, fraction));
         if (target.length)
             inputs_.draw(target.tool,
-                         is_last ? *target.length : std::lerp(length, *target.length, part));
+                         is_last ? *target.length : std::lerp(length, *target.length, fraction));
         if (target.is_withdrawn && (is_at_once || is_last))
             inputs_.withdraw(target.tool,
                              target.pose_before_end ? &*target.pose_before_end : nullptr);
@@ -42,7 +43,7 @@ const StepInputs& ToolPlayer::inputs(double part, bool is_last) {
     for (std::size_t i = 0; i < grasps_.size(); ++i) {
         const GraspInput& target = targets_.grasps()[i];
         inputs_.move(target.grasp,
-                     is_last ? target.pose : interpolate(grasps_[i], target.pose, part));
+                     is_last ? target.pose : interpolate(grasps_[i], target.pose, fraction));
     }
     return inputs_;
 }

@@ -34,10 +34,10 @@ class ToolPlayer {
     /// Returns the inputs of the next step. Tools go straight, and turn the shortest way; a thread
     /// is drawn evenly. A tool that was not there is at its target at once. Tools are withdrawn in
     /// the last step; those that cut at once, such as a plane, in the first.
-    /// @param part     of the interval, at the end of the step
+    /// @param fraction     of the interval, at the end of the step
     /// @param is_last  true in the last step, which ends at the targets
     /// @lifetime       until the next call
-    const StepInputs& inputs(double part, bool is_last);
+    const StepInputs& inputs(double fraction, bool is_last);
     /// Adds a step, which had the last inputs(), to the means.
     void add(const StepReport& step);
     /// Ends the interval. Nothing has a target any more.

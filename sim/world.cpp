@@ -35,7 +35,7 @@ void World::require_possible(const StepInputs& inputs) const { parts_->require_p
 const StepReport& World::Parts::checked_step(double end, double dt, const StepInputs& inputs) {
     if (has_failed)
         throw InputError("the world has failed in the step from " + format_number(time) +
-                         " s; restore a state that was saved before");
+                         " s; go back to a moment before it, by undo() or restore()");
     if (!(end > time && std::isfinite(end)))
         throw InputError("a step from " + format_number(time) + " s to " + format_number(end) +
                          " s: it must go forward");
@@ -44,9 +44,9 @@ const StepReport& World::Parts::checked_step(double end, double dt, const StepIn
         throw InputError("a step of " + format_number(dt) + " s is above the stable step of " +
                          format_number(at_rest) + " s");
     require_possible(inputs);
-    const std::size_t n = num_parts(dt, inputs);
+    const std::size_t n = num_substeps(dt, inputs);
     // From here on nothing is refused.
-    report.num_parts = n;
+    report.num_substeps = n;
     take(inputs);
     has_failed = true;
     step_to(end);
@@ -80,7 +80,7 @@ void World::Parts::take(const StepInputs& inputs) {
         grasps[constraints.position_of(input.grasp)]->target = input.pose;
 }
 
-std::size_t World::Parts::num_parts(double dt, const StepInputs& inputs) const {
+std::size_t World::Parts::num_substeps(double dt, const StepInputs& inputs) const {
     if (solver != Solver::semi_implicit_euler) return 1;
     constexpr double most = 1000.0;
     double parts = std::max(std::ceil(dt / stable_step - rounding_of_steps), 1.0);
@@ -93,7 +93,7 @@ std::size_t World::Parts::num_parts(double dt, const StepInputs& inputs) const {
     for (const ToolInput& input : inputs.tools()) {
         const ToolActor& tool = tool_of(input.tool);
         if (!contact || !tool.is_present() || !input.pose) continue;
-        parts = std::max(parts, tool.num_parts(*input.pose, contact->size()));
+        parts = std::max(parts, tool.num_substeps(*input.pose, contact->size()));
         if (parts > most)
             throw InputError("tool '" + tool.def().name + "' moves so far in a step of " +
                              format_number(dt) +

@@ -15,6 +15,7 @@
 
 #include "incise/base/error.h"
 #include "incise/contact/contact_settings.h"
+#include "incise/contact/tool_contact_point.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/physics/body/body_arrays.h"
 #include "incise/physics/body/force_term.h"
@@ -23,14 +24,12 @@
 #include "incise/sim/handles.h"
 #include "incise/sim/ledger.h"
 #include "incise/sim/step_inputs.h"
+#include "incise/sim/undo_point.h"
 #include "incise/topology/boundary_surface.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_data.h"
 #include "incise/topology/pose.h"
 
-namespace incise::contact {
-struct ToolContactPoint;
-}
 namespace incise::cutting {
 class Cutter;
 }
@@ -69,8 +68,6 @@ struct WorldDef {
     int num_threads = 1;  ///< does not change any result
 };
 
-class UndoPoint;
-
 /// The definition of a tool.
 struct ToolDef {
     std::string name = {};  ///< for reports and messages
@@ -106,9 +103,9 @@ struct ContactState {
 
 /// The report of one step.
 struct StepReport {
-    double from = 0.0, to = 0.0;  ///< s
-    std::size_t num_parts = 1;    ///< explicit steps that the step was divided into
-    std::vector<Edit> edits;      ///< in order of execution
+    double from = 0.0, to = 0.0;   ///< s
+    std::size_t num_substeps = 1;  ///< explicit steps that the step was divided into
+    std::vector<Edit> edits;       ///< in order of execution
     /// Those present at the end of the step, and those with a force that were withdrawn at its end.
     std::vector<ToolState> tools;
     ContactState contact;  ///< in the last part of the step
@@ -150,10 +147,10 @@ class World {
     /// too.
     ///
     /// With the explicit solver, a step above stable_step() moves the tissue in equal parts that
-    /// are not above it: StepReport::num_parts. So does a step in which a probe moves by more than
-    /// a quarter of an element, or of its least half width: it does not pass through a surface. A
-    /// step of constant length therefore stays possible when strain stiffens the tissue; it only
-    /// takes longer. Tools cut once, at the end of the step.
+    /// are not above it: StepReport::num_substeps. So does a step in which a probe moves by more
+    /// than a quarter of an element, or of its least half width: it does not pass through a
+    /// surface. A step of constant length therefore stays possible when strain stiffens the tissue;
+    /// it only takes longer. Tools cut once, at the end of the step.
     ///
     /// Throws InputError, and changes nothing, if `dt` is not above 0, if `dt` is above
     /// rest_stable_step() or above 1000 times stable_step() with the explicit solver, if a probe
@@ -217,8 +214,8 @@ class World {
     /// True from tie_suture() to untie_suture(), until the thread has torn or an edit has left it
     /// fewer than two points.
     bool is_suture_tied(ToolId tool) const;
-    /// Returns the points at which tissue exerted a force on a probe or a grasper in the last part
-    /// of the last step; see contact::ToolContactPoint. In a step of one part, the forces add up to
+    /// Returns the points at which tissue exerted a force on a probe or a grasper in the last
+    /// substep of the last step. In a step of one substep, the forces add up to
     /// that of its ToolState. Nothing for other tools, for tools that are not there, and after
     /// restore() and undo().
     /// @lifetime  until the world is stepped, restored or destroyed, or the tool is placed or
@@ -250,7 +247,7 @@ class World {
     /// Removes a constraint, which may be a grasp. The nodes of the constraint keep their
     /// velocities.
     void release(ConstraintId constraint);
-    /// Returns the force, N, and the moment, N m, that a constraint exerted on the body, means over
+    /// Returns the force, N, and the torque, N m, that a constraint exerted on the body, means over
     /// the last step.
     const physics::Reaction& reaction(ConstraintId constraint) const;
 
@@ -355,7 +352,8 @@ class World {
     void restore(std::string_view bytes);
 
     /// Returns the present moment, to which undo() can go back. From now on the world remembers
-    /// its edits, until all such moments are destroyed. Cost: O(#nodes).
+    /// its edits, until all such moments are destroyed. Throws InputError if the world has failed.
+    /// Cost: O(#nodes).
     UndoPoint undo_point() const;
     /// Goes back to a moment: takes back all edits since then, and gives body, tools, constraints,
     /// loads and time what they had. save() returns the bytes that it would have returned then, and

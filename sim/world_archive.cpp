@@ -192,6 +192,10 @@ void World::restore(std::string_view bytes) {
 }
 
 UndoPoint World::undo_point() const {
+    if (parts_->has_failed)
+        throw InputError(
+            "the world has failed, and this is no moment to go back to: go back to one from before "
+            "the step that failed, by undo() or restore()");
     ArchiveWriter ar;
     parts_->save_motion(ar);
     return {parts_->log_end, parts_->mesh.epoch(), parts_->materials, ar.take()};

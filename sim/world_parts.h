@@ -104,7 +104,7 @@ struct World::Parts {
     void require_possible(const StepInputs& inputs) const;
     void take(const StepInputs& inputs);
     void step_to(double end);
-    /// Moves the body to the time `end`, in report.num_parts equal parts.
+    /// Moves the body to the time `end`, in report.num_substeps equal parts.
     void move_to(double end);
     /// Returns the bound on steps for the present strain and motion, s.
     double present_bound() const;
@@ -114,7 +114,7 @@ struct World::Parts {
     void renew_stable_step();
     /// Returns in how many parts, none above the stable step, a step of `dt`, s, is made. Throws
     /// InputError if they would be too many.
-    std::size_t num_parts(double dt, const StepInputs& inputs) const;
+    std::size_t num_substeps(double dt, const StepInputs& inputs) const;
     /// Tells the contact which tools touch in a part of a step, from one share of it to another.
     /// @param moved  how far the tissue may have moved in the step so far, m
     void touch_with_tools(double from, double to, double moved);

@@ -194,7 +194,7 @@ void World::Parts::touch_with_tools(double from, double to, double moved) {
 
 void World::Parts::move_to(double end) {
     const double from = time, dt = end - time;
-    const std::size_t n = report.num_parts;
+    const std::size_t n = report.num_substeps;
     double moved = 0.0;  // how far a node has moved, at most
     reactions.assign(model.num_constraints(), {});
     for (std::size_t i = 0; i < n; ++i) {

@@ -64,7 +64,7 @@ FragmentCounts counts_of(const Mesh& mesh, const FragmentMesh& fragments) {
     FragmentCounts counts;
     counts.fragments = fragments.num_elements();
     for (const ElementId e : fragments.elements())
-        counts.smallest_share = std::min(counts.smallest_share, fragments.share(e));
+        counts.smallest_share = std::min(counts.smallest_share, fragments.volume_share(e));
     std::vector<bool> has_material(fragments.node_capacity(), false);
     for (const VertexId n : mesh.nodes())
         if (const fragments::EmbeddedPoint at = fragments.embedded(mesh, n); at.count == 1)

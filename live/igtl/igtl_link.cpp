@@ -431,7 +431,7 @@ std::vector<Order> IgtlLink::orders(const Session& session) {
     return orders;
 }
 
-void IgtlLink::look(const Session& session, const DisplayMesh& mesh) {
+void IgtlLink::publish(const Session& session, const DisplayMesh& mesh) {
     std::shared_ptr<const Parts::Surface> shown;
     if (const auto now = Clock::now(); now >= parts_->next_surface) {
         parts_->next_surface = std::max(parts_->next_surface + surface_period, now);

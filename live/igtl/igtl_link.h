@@ -43,7 +43,7 @@ class IgtlLink : public Device {
 
     std::uint16_t port() const;
     std::vector<Order> orders(const Session& session) override;
-    void look(const Session& session, const DisplayMesh& surface) override;
+    void publish(const Session& session, const DisplayMesh& surface) override;
     void rest() override;
     std::vector<std::string> complaints() override;
 

@@ -17,7 +17,7 @@ class Device {
     /// Is called before each tick. Returns what to do. Orders that are refused are told to all.
     virtual std::vector<Order> orders(const Session& session) = 0;
     /// Is called after each tick.
-    virtual void look(const Session& session, const DisplayMesh& surface) = 0;
+    virtual void publish(const Session& session, const DisplayMesh& surface) = 0;
     /// Is called again and again while nothing moves, as in a pause.
     virtual void rest() = 0;
     /// Is called now and then. Returns what to tell the user.

@@ -65,7 +65,7 @@ void LiveLoop::run(const std::function<bool()>& is_to_stop) {
         if (!tick(is_to_stop)) return;
         if (is_paused_ && steps_wanted_ > 0) --steps_wanted_;
         due = pace_.note_tick(Pace::Clock::now());
-        tell_if_slow();
+        warn_if_slow();
         show();
     }
 }
@@ -123,7 +123,7 @@ void LiveLoop::open(std::uint64_t page) {
 
 void LiveLoop::close(std::uint64_t page) {
     std::erase(pages_, page);
-    drop(page);
+    put_tool_away(page);
     if (operator_ != page) return;
     operator_ = pages_.empty() ? 0 : pages_.front();
     if (operator_ != 0) say_hello(operator_);
@@ -134,24 +134,24 @@ void LiveLoop::read(const Request& request) {
     constexpr std::size_t longest_of_watcher = 256;
     if (request.page != operator_ && request.text.size() > longest_of_watcher)
         throw InputError(looks_on);
-    obey(request.page, parse_object(request.text));
+    execute_wish(request.page, parse_object(request.text));
 }
 
-void LiveLoop::obey(std::uint64_t page, const Json& wish) {
+void LiveLoop::execute_wish(std::uint64_t page, const Json& wish) {
     const std::string what = text_in(wish, "do");
     if (what == "take_over") {
         if (operator_ == page) return;
-        drop(operator_);
+        put_tool_away(operator_);
         operator_ = page;
         return say_hello_to_all();
     }
     if (operator_ != page) throw InputError(looks_on);
-    if (what == "take") return take(page, wish);
+    if (what == "take") return take_tool(page, wish);
     if (what == "move") return execute(MoveTool{in_hand(page), pose_in(member(wish, "pose"))});
-    if (what == "drop") return drop(page);
+    if (what == "drop") return put_tool_away(page);
     if (what == "close") return execute(CloseTool{in_hand(page)});
     if (what == "open") return execute(OpenTool{in_hand(page)});
-    if (what == "sew") return sew(wish);
+    if (what == "sew") return tie_suture(wish);
     if (what == "tighten") return tighten(wish);
     if (what == "untie") return execute(UntieSuture{text_in(wish, "name")});
     if (what == "undo") return undo();
@@ -176,7 +176,7 @@ void LiveLoop::obey(std::uint64_t page, const Json& wish) {
 }
 
 void LiveLoop::execute(const Order& order) {
-    for (const std::string& warning : session_.execute(order)) tell("warning", warning);
+    for (const std::string& warning : session_.execute(order)) send_message("warning", warning);
     const auto* added = std::get_if<AddTool>(&order);
     const bool keeps_holds = std::holds_alternative<MoveTool>(order) ||
                              std::holds_alternative<WithdrawTool>(order) ||
@@ -198,7 +198,7 @@ std::string LiveLoop::new_name(const std::string& kind) {
     }
 }
 
-void LiveLoop::take(std::uint64_t page, const Json& wish) {
+void LiveLoop::take_tool(std::uint64_t page, const Json& wish) {
     const Json& definition = member(wish, "tool");
     if (!definition.is_object()) throw InputError("'tool': must be an object");
     const std::string kind = text_in(definition, "kind");
@@ -207,21 +207,21 @@ void LiveLoop::take(std::uint64_t page, const Json& wish) {
     refuse_files(definition);
     const AddTool order{new_name(kind), value_of(definition), pose_in(member(wish, "pose"))};
     session_.check(order);  // a state is costly
-    auto before = moment_before_stroke();
+    auto before = point_before_stroke();
     execute(order);
-    drop(page);  // what was in the hand
+    put_tool_away(page);  // what was in the hand
     keep_stroke(std::move(before));
     hands_[page] = order.name;
 }
 
-void LiveLoop::sew(const Json& wish) {
+void LiveLoop::tie_suture(const Json& wish) {
     Json definition = {{"kind", "suture"},
                        {"points", member(wish, "points")},
                        {"stiffness", number_in(wish, "stiffness")}};
     require_few_tools();
     const AddTool order{new_name("suture"), value_of(definition), {}};
     session_.check(order);
-    auto before = moment_before_stroke();
+    auto before = point_before_stroke();
     execute(order);
     keep_stroke(std::move(before));
     has_changed_hold_ = true;
@@ -237,17 +237,17 @@ void LiveLoop::require_few_tools() const {
                          "begin another one");
 }
 
-void LiveLoop::keep_stroke(std::optional<Session::Moment> before) {
+void LiveLoop::keep_stroke(std::optional<Session::UndoPoint> before) {
     if (!before) return;
-    moments_.keep_stroke(std::move(*before));
+    undo_points_.keep_stroke(std::move(*before));
     has_changed_hold_ = false;
 }
 
 /// Returns the present state, if undo does not lead to it already: nothing has moved since the last
 /// stroke began, and no jaws or threads have taken hold or let go.
-std::optional<Session::Moment> LiveLoop::moment_before_stroke() const {
-    if (moments_.is_stroke_at(session_.num_ticks()) && !has_changed_hold_) return std::nullopt;
-    return session_.moment();
+std::optional<Session::UndoPoint> LiveLoop::point_before_stroke() const {
+    if (undo_points_.is_stroke_at(session_.num_ticks()) && !has_changed_hold_) return std::nullopt;
+    return session_.undo_point();
 }
 
 void LiveLoop::tighten(const Json& wish) {
@@ -260,7 +260,7 @@ void LiveLoop::tighten(const Json& wish) {
     execute(DrawSuture{name, length});
 }
 
-void LiveLoop::drop(std::uint64_t page) {
+void LiveLoop::put_tool_away(std::uint64_t page) {
     const auto found = hands_.find(page);
     if (found == hands_.end()) return;
     const std::string name = found->second;
@@ -268,21 +268,21 @@ void LiveLoop::drop(std::uint64_t page) {
     execute(WithdrawTool{name});
 }
 
-void LiveLoop::go_back(const Session::Moment& moment) {
-    session_.undo(moment);
+void LiveLoop::go_back(const Session::UndoPoint& point) {
+    session_.undo(point);
     follow_return();
 }
 
 void LiveLoop::go_back_to_start() {
     session_.reset();
-    moments_.forget_all();
+    undo_points_.forget_all();
     follow_return();
 }
 
 /// Follows the session, which went back.
 void LiveLoop::follow_return() {
     note([&] { recorder_.note_return(session_); });
-    moments_.forget_after(session_.num_ticks());
+    undo_points_.forget_after(session_.num_ticks());
     pictures_.forget_surface();
     messages_.forget_edits();
     has_changed_hold_ = true;
@@ -294,8 +294,8 @@ void LiveLoop::follow_return() {
 }
 
 void LiveLoop::undo() {
-    if (!moments_.has_stroke()) throw InputError("there is nothing to undo");
-    go_back(moments_.take_stroke());
+    if (!undo_points_.has_stroke()) throw InputError("there is nothing to undo");
+    go_back(undo_points_.take_stroke());
 }
 
 void LiveLoop::reset() {
@@ -304,8 +304,8 @@ void LiveLoop::reset() {
 }
 
 bool LiveLoop::tick(const std::function<bool()>& is_to_stop) {
-    keep_good_moment();
-    obey_devices();
+    keep_good_point();
+    execute_device_orders();
     try {
         if (!session_.tick(is_to_stop)) return false;
     } catch (const std::exception& error) {  // a motion is lost, or a tool meets what it cannot cut
@@ -314,7 +314,7 @@ bool LiveLoop::tick(const std::function<bool()>& is_to_stop) {
     }
     note([&] { recorder_.note_tick(session_); });
     tell_warnings();
-    for (Device* device : devices_) device->look(session_, pictures_.follow(session_));
+    for (Device* device : devices_) device->publish(session_, pictures_.follow(session_));
     return true;
 }
 
@@ -323,25 +323,25 @@ void LiveLoop::note(const std::function<void()>& in_recording) {
     try {
         in_recording();
     } catch (const OutputError& error) {
-        tell("error", std::string(error.what()) +
-                          ". The recording goes on in memory: save it from the page");
+        send_message("error", std::string(error.what()) +
+                                  ". The recording goes on in memory: save it from the page");
     }
 }
 
 /// Keeps the state now and then: each second, or less often if that would take more than a
 /// hundredth of the time.
-void LiveLoop::keep_good_moment() {
+void LiveLoop::keep_good_point() {
     const auto begin = Pace::Clock::now();
-    if (begin < next_moment_) return;
-    moments_.keep_good(session_.moment());
+    if (begin < next_point_) return;
+    undo_points_.keep_good(session_.undo_point());
     const auto end = Pace::Clock::now();
-    next_moment_ =
+    next_point_ =
         end + std::max<Pace::Clock::duration>(std::chrono::seconds(1), 100 * (end - begin));
 }
 
 /// Executes the orders of devices. They may come a thousand times a second: the same complaint is
 /// told once.
-void LiveLoop::obey_devices() {
+void LiveLoop::execute_device_orders() {
     for (Device* device : devices_) {
         std::set<std::string> refused;  // tools that are not there: what else they do is not asked
         for (const Order& order : device->orders(session_)) {
@@ -353,7 +353,8 @@ void LiveLoop::obey_devices() {
             } catch (const InputError& error) {
                 if (std::holds_alternative<AddTool>(order)) refused.insert(name);
                 const std::string text = "tool '" + name + "' of a device: " + error.what();
-                if (std::exchange(last_complaints_[device], text) != text) tell("error", text);
+                if (std::exchange(last_complaints_[device], text) != text)
+                    send_message("error", text);
             }
         }
         tell_complaints(*device);
@@ -361,7 +362,7 @@ void LiveLoop::obey_devices() {
 }
 
 void LiveLoop::tell_complaints(Device& device) {
-    for (const std::string& complaint : device.complaints()) tell("warning", complaint);
+    for (const std::string& complaint : device.complaints()) send_message("warning", complaint);
 }
 
 /// Goes back to the last state of now and then; if that leads to the same end, farther back.
@@ -369,8 +370,8 @@ void LiveLoop::recover(const std::string& reason) {
     const std::uint64_t failure = session_.num_ticks();
     num_failures_ = failure <= last_failure_ + 1 ? num_failures_ + 1 : 1;
     last_failure_ = failure;
-    if (moments_.has_good())
-        go_back(moments_.take_good());
+    if (undo_points_.has_good())
+        go_back(undo_points_.take_good());
     else
         go_back_to_start();
     std::string text = reason +
@@ -381,10 +382,10 @@ void LiveLoop::recover(const std::string& reason) {
         num_failures_ = 0;
         text += "; it pauses, as this happens again and again";
     }
-    tell("error", text);
+    send_message("error", text);
 }
 
-void LiveLoop::tell(std::string_view level, const std::string& text) {
+void LiveLoop::send_message(std::string_view level, const std::string& text) {
     server_.send_to_all(message_text(level, text));
     if (on_message) on_message(level, text);
 }
@@ -392,11 +393,11 @@ void LiveLoop::tell(std::string_view level, const std::string& text) {
 void LiveLoop::tell_warnings() {
     const auto& warnings = session_.simulation().warnings();
     for (; num_warnings_told_ < warnings.size(); ++num_warnings_told_)
-        tell("warning", warnings[num_warnings_told_]);
+        send_message("warning", warnings[num_warnings_told_]);
 }
 
 /// Says once, after the first seconds, if the body is too much for this machine.
-void LiveLoop::tell_if_slow() {
+void LiveLoop::warn_if_slow() {
     constexpr double enough = 0.9, known_after = 2.0;  // s
     if (has_told_pace_ || session_.world().time() < known_after * std::min(1.0, pace_.factor()))
         return;
@@ -411,7 +412,7 @@ void LiveLoop::tell_if_slow() {
                  ? "are a coarser mesh, softer materials, fewer small elements, and "
                    "dynamics.precision = \"single\""
                  : "is a coarser mesh");
-    tell("warning", text.str());
+    send_message("warning", text.str());
 }
 
 void LiveLoop::say_hello(std::uint64_t page) {
@@ -429,7 +430,7 @@ void LiveLoop::show() {
     const auto hand = hands_.find(operator_);
     auto picture = pictures_.make(session_);
     picture->state = messages_.state({.is_paused = is_paused_,
-                                      .can_undo = moments_.has_stroke(),
+                                      .can_undo = undo_points_.has_stroke(),
                                       .speed = pace_.speed(),
                                       .factor = pace_.factor(),
                                       .in_hand = hand == hands_.end() ? "" : hand->second});

@@ -14,10 +14,10 @@
 #include "incise/live/json_values.h"
 #include "incise/live/loop/device.h"
 #include "incise/live/loop/downloads.h"
-#include "incise/live/loop/moments.h"
 #include "incise/live/loop/pace.h"
 #include "incise/live/loop/page_messages.h"
 #include "incise/live/loop/picture_maker.h"
+#include "incise/live/loop/undo_points.h"
 #include "incise/live/recording.h"
 #include "incise/live/server/server.h"
 #include "incise/live/session.h"
@@ -52,15 +52,15 @@ class LiveLoop {
     void open(std::uint64_t page);
     void close(std::uint64_t page);
     void read(const Request& request);
-    void obey(std::uint64_t page, const Json& wish);
+    void execute_wish(std::uint64_t page, const Json& wish);
 
-    void take(std::uint64_t page, const Json& wish);
-    void sew(const Json& wish);
+    void take_tool(std::uint64_t page, const Json& wish);
+    void tie_suture(const Json& wish);
     void tighten(const Json& wish);
-    void drop(std::uint64_t page);
+    void put_tool_away(std::uint64_t page);
     void require_few_tools() const;
-    std::optional<Session::Moment> moment_before_stroke() const;
-    void keep_stroke(std::optional<Session::Moment> before);
+    std::optional<Session::UndoPoint> point_before_stroke() const;
+    void keep_stroke(std::optional<Session::UndoPoint> before);
     void undo();
     void reset();
     void execute(const Order& order);
@@ -69,16 +69,16 @@ class LiveLoop {
 
     bool tick(const std::function<bool()>& is_to_stop);
     void note(const std::function<void()>& in_recording);
-    void obey_devices();
+    void execute_device_orders();
     void tell_complaints(Device& device);
-    void keep_good_moment();
-    void go_back(const Session::Moment& moment);
+    void keep_good_point();
+    void go_back(const Session::UndoPoint& point);
     void go_back_to_start();
     void follow_return();
     void recover(const std::string& reason);
-    void tell(std::string_view level, const std::string& text);
+    void send_message(std::string_view level, const std::string& text);
     void tell_warnings();
-    void tell_if_slow();
+    void warn_if_slow();
     void say_hello(std::uint64_t page);
     void say_hello_to_all();
     void show();
@@ -90,8 +90,8 @@ class LiveLoop {
     PageMessages messages_;
     Downloads downloads_;
     Pace pace_;
-    Moments moments_;
-    Pace::Clock::time_point next_moment_ = {}, last_shown_ = {};
+    UndoPoints undo_points_;
+    Pace::Clock::time_point next_point_ = {}, last_shown_ = {};
     std::deque<Request> requests_;  // not handled yet
     std::vector<Device*> devices_;
     std::map<const Device*, std::string> last_complaints_;  // about their orders

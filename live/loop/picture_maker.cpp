@@ -58,7 +58,7 @@ const DisplayMesh& PictureMaker::follow(Session& session) {
     if (has_surface_ && !is_changed) return mesh_;
     has_surface_ = true;
     ++version_;
-    mesh_.take(surface, world.mesh());
+    mesh_.update(surface, world.mesh());
     values_.clear();
     rest_.clear();
     for (const VertexId n : mesh_.nodes()) append(rest_, world.mesh().rest_position(n));

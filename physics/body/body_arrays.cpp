@@ -23,7 +23,7 @@ BodyArrays body_arrays(const Model& model) {
         corners.clear();
         for (const NodeId n : fragments.corners(e)) corners.push_back(row_of_node[n.index()]);
         arrays.mesh.add_cell(fragments.kind(e), corners, fragments.region(e));
-        arrays.volume_shares.push_back(fragments.share(e));
+        arrays.volume_shares.push_back(fragments.volume_share(e));
     }
     for (const CellId e : model.mesh().elements())
         arrays.cell_of_element.push_back(row_of_fragment[fragments.fragment_of_cell(e).index()]);

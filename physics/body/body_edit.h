@@ -31,7 +31,7 @@ struct BodyView {
     /// Returns the mass of an element of the mesh at each of its corners, kg.
     double mass_at_corners(CellId cell) const {
         const ElementId e = fragments.fragment_of_cell(cell);
-        if (fragments.cells_of(e).size() == 1 && fragments.share(e) == 1.0)
+        if (fragments.cells_of(e).size() == 1 && fragments.volume_share(e) == 1.0)
             return elements.block_of(fragments, e).contributions(e).mass;
         return elements.density(mesh.region(cell)) * topology::rest_volume(mesh, cell) /
                static_cast<double>(mesh.corners(cell).size());

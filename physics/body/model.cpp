@@ -39,7 +39,8 @@ BoundaryConditions read_boundary_conditions(const topology::Mesh& mesh, ArchiveR
 }
 
 /// Returns the nodes of all constraints but grasps, which come and go.
-std::vector<VertexId> held_by(const topology::Mesh& mesh, std::span<const Constraint> constraints) {
+std::vector<VertexId> constrained_by(const topology::Mesh& mesh,
+                                     std::span<const Constraint> constraints) {
     std::vector<VertexId> nodes;
     for (const Constraint& constraint : constraints) {
         constraint.require_fit(mesh);
@@ -61,7 +62,8 @@ Model::Model(const topology::Mesh& mesh, Parts parts, BoundaryConditions boundar
 
 Model::Parts::Parts(const topology::Mesh& mesh, const MaterialTable& of_mesh,
                     std::span<const Constraint> constraints)
-    : fragments(mesh, fragments::default_light_share, held_by(mesh, constraints)), table(of_mesh) {
+    : fragments(mesh, fragments::default_light_share, constrained_by(mesh, constraints)),
+      table(of_mesh) {
     if (table.fibres.empty()) return;
     table.fibres.resize(fragments.element_capacity(), Vec3::Zero());
     for (const ElementId e : fragments.elements())
@@ -85,14 +87,16 @@ Model::Model(const topology::Mesh& mesh, FragmentMesh fragments, const MaterialT
       constraints_(view(), std::move(boundary_conditions.constraints)),
       loads_(boundary_conditions.gravity, {}, view()),
       reactions_(constraints_.size()) {
-    hold_constrained();
+    constrain_fragments();
     resize(fragments_.node_capacity());
     for (std::size_t n = 0; n < fragments_.node_capacity(); ++n) gather(NodeId(n));
     loads_ = Loads(boundary_conditions.gravity, std::move(boundary_conditions.loads), view());
     compute_forces(0.0);
 }
 
-void Model::hold_constrained() { fragments_.hold(held_by(mesh_, constraints_.all())); }
+void Model::constrain_fragments() {
+    fragments_.constrain(constrained_by(mesh_, constraints_.all()));
+}
 
 void Model::resize(std::size_t num_nodes) {
     elastic_forces_.resize(num_nodes, Vec3::Zero());
@@ -183,7 +187,7 @@ void Model::save(ArchiveWriter& ar) const {
 }
 
 void Model::save_motion(ArchiveWriter& ar) const {
-    ar(std::vector(fragments_.held().begin(), fragments_.held().end()));
+    ar(std::vector(fragments_.constrained().begin(), fragments_.constrained().end()));
     save_state(ar);
 }
 
@@ -209,7 +213,7 @@ void Model::restore_motion(ArchiveReader& ar, double time) {
     auto held = ar.read<std::vector<std::uint8_t>>();
     if (held.size() != mesh_.node_capacity())
         throw InputError("the motion is that of another body");
-    fragments_.set_held(std::move(held));
+    fragments_.set_constrained(std::move(held));
     BoundaryConditions boundary_conditions = read_boundary_conditions(mesh_, ar);
     damping_ = boundary_conditions.damping;
     loads_ = Loads(boundary_conditions.gravity, std::move(boundary_conditions.loads), view());

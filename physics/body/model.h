@@ -53,19 +53,19 @@ struct Totals {
     }
 };
 
-/// The force that a constraint exerts on the body, N, and its moment about Constraint::point, N m.
+/// The force that a constraint exerts on the body, N, and its torque about Constraint::point, N m.
 struct Reaction {
-    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 
     Reaction& operator+=(const Reaction& o) {
         force += o.force;
-        moment += o.moment;
+        torque += o.torque;
         return *this;
     }
     friend Reaction operator*(double factor, const Reaction& r) {
-        return {factor * r.force, factor * r.moment};
+        return {factor * r.force, factor * r.torque};
     }
-    static void archive(auto& ar, auto& self) { ar(self.force, self.moment); }
+    static void archive(auto& ar, auto& self) { ar(self.force, self.torque); }
 };
 
 /// A body with lumped masses at nodes, and elastic elements between them.
@@ -445,7 +445,7 @@ class Model {
     NodeSums sums_of(NodeRange range) const;
     BodyView view() const { return {mesh_, fragments_, elements_, masses_, state_.positions()}; }
     void update_outer_terms();
-    void hold_constrained();
+    void constrain_fragments();
     void resize(std::size_t num_nodes);
     void gather(NodeId n);
     void follow(const BodyEdit& edit);

@@ -14,7 +14,7 @@ namespace incise::physics {
 
 void Model::add_constraint(Constraint constraint) {
     constraints_.add(view(), std::move(constraint));
-    hold_constrained();
+    constrain_fragments();
     reactions_.emplace_back();
     ++structure_version_;
 }
@@ -23,13 +23,13 @@ void Model::set_constraint(std::size_t i, Constraint constraint) {
     std::vector<Constraint> all(constraints_.all().begin(), constraints_.all().end());
     all[i] = std::move(constraint);
     constraints_ = Constraints(view(), std::move(all));
-    hold_constrained();
+    constrain_fragments();
     ++structure_version_;
 }
 
 void Model::remove_constraint(std::size_t i) {
     constraints_.remove(view(), i);
-    hold_constrained();
+    constrain_fragments();
     reactions_.erase(reactions_.begin() + static_cast<std::ptrdiff_t>(i));
     ++structure_version_;
 }

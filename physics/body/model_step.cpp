@@ -116,7 +116,7 @@ void Model::add_reaction(int constraint, int component, double force, const Vec3
                          std::span<Reaction> reactions) const {
     const auto s = static_cast<std::size_t>(constraint);
     reactions[s].force[component] += force;
-    reactions[s].moment += (x - constraints_.point(s)).cross(force * Vec3::Unit(component));
+    reactions[s].torque += (x - constraints_.point(s)).cross(force * Vec3::Unit(component));
 }
 
 void Model::shift_velocities(double time) {

@@ -124,7 +124,7 @@ std::size_t ElementStore::block_index(ElementId e, int region) const {
 
 ElementInput ElementStore::input_of(const FragmentMesh& fragments, ElementId e) const {
     return {fragments.corners(e), fragments.rest_positions(),
-            fibres_ ? (*fibres_)[e] : Vec3(Vec3::Zero()), fragments.share(e)};
+            fibres_ ? (*fibres_)[e] : Vec3(Vec3::Zero()), fragments.volume_share(e)};
 }
 
 void ElementStore::insert(const FragmentMesh& fragments, ElementId e) {

@@ -9,10 +9,10 @@ namespace incise::physics {
 void ImplicitEuler::step(Model& model, double time, double dt) {
     model.begin_step();
     newton_.follow(model);
-    part_of_step(model, time, dt, 0);
+    substep(model, time, dt, 0);
 }
 
-void ImplicitEuler::part_of_step(Model& model, double time, double dt, int halvings) {
+void ImplicitEuler::substep(Model& model, double time, double dt, int halvings) {
     const auto before = model.positions(), v = model.velocities();
     const double damping = model.damping(), slowed = 1.0 + damping * dt;
     x_.assign(before.begin(), before.end());
@@ -28,8 +28,8 @@ void ImplicitEuler::part_of_step(Model& model, double time, double dt, int halvi
     if (!report.has_converged) {
         constexpr int most_halvings = 10;
         if (halvings < most_halvings) {
-            part_of_step(model, time, 0.5 * dt, halvings + 1);
-            part_of_step(model, time + 0.5 * dt, 0.5 * dt, halvings + 1);
+            substep(model, time, 0.5 * dt, halvings + 1);
+            substep(model, time + 0.5 * dt, 0.5 * dt, halvings + 1);
             return;
         }
         std::ostringstream text;

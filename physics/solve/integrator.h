@@ -73,7 +73,7 @@ class ImplicitEuler final : public Integrator {
     void step(Model& model, double time, double dt) override;
 
   private:
-    void part_of_step(Model& model, double time, double dt, int halvings);
+    void substep(Model& model, double time, double dt, int halvings);
 
     NewtonSolver newton_{false};
     std::vector<Vec3> x_, velocities_, predicted_positions_, elastic_, outer_,

@@ -30,7 +30,7 @@ class GrasperActor final : public TouchingActor<cutting::Grasper, contact::Grasp
     }
     bool is_closed() const override { return is_closed_; }
     std::size_t num_held() const override {
-        return is_closed_ && contact_ ? contact_->num_held() : 0;
+        return is_closed_ && contact_ ? contact_->num_gripped() : 0;
     }
 
     contact::ToolContact* touch(const Tissue& tissue, double from, double to, double) override {

@@ -29,7 +29,7 @@ class ProbeActor final : public TouchingActor<cutting::Probe, contact::RigidCont
     }
 
     // So that the probe does not pass through a surface.
-    double num_parts(const Pose& to, double element_size) const override {
+    double num_substeps(const Pose& to, double element_size) const override {
         constexpr double most = 0.25;  // of an element, or of the probe
         const double move = (to.position - pose().position).norm() +
                             reach_ * pose().rotation.angularDistance(to.rotation);

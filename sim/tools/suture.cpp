@@ -65,7 +65,7 @@ class SutureActor final : public TouchingActor<cutting::Suture, contact::SutureC
     }
 
   private:
-    std::size_t num_points() const { return contact_ ? contact_->num_held() : 0; }
+    std::size_t num_points() const { return contact_ ? contact_->num_gripped() : 0; }
     void arrive() override { length_ = target_length_; }
     void save_own(ArchiveWriter& ar) const override {
         ar(length_);

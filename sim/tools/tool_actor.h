@@ -69,8 +69,8 @@ class ToolActor {
     /// Returns in how many parts a step must be divided in which the tool goes to a pose.
     /// @param element_size  mean length of an element at rest, m
     /// @pre  the tool is there
-    virtual double num_parts([[maybe_unused]] const Pose& to,
-                             [[maybe_unused]] double element_size) const {
+    virtual double num_substeps([[maybe_unused]] const Pose& to,
+                                [[maybe_unused]] double element_size) const {
         return 1.0;
     }
     /// Takes what the tool is to do in the step that now begins.

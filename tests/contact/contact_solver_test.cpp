@@ -34,7 +34,7 @@ struct Nodes {
     void apply(ContactSolver& solver) {
         solver.solve(velocities, inverse_masses, one_step, one_step);
         for (std::size_t i = 0; i < solver.size(); ++i)
-            for (const Share& share : solver.shares(i))
+            for (const NodeWeight& share : solver.weights(i))
                 velocities[share.node.index()] +=
                     share.weight *
                     inverse_masses[share.node.index()].cwiseProduct(solver.impulse(i));
@@ -43,8 +43,8 @@ struct Nodes {
 
 void add_pair(ContactSolver& solver, ContactPoint point, std::size_t a, std::size_t b) {
     solver.begin(point);
-    solver.add_share(NodeId(a), 1.0);
-    solver.add_share(NodeId(b), -1.0);
+    solver.add_weight(NodeId(a), 1.0);
+    solver.add_weight(NodeId(b), -1.0);
 }
 
 TEST(ContactSolver, BringsTwoMassesToTheirCommonVelocity) {
@@ -100,7 +100,7 @@ TEST(ContactSolver, FollowsARigidBody) {
     nodes.add(1.0, Vec3::Zero());
     ContactSolver solver(1.0);
     solver.begin({.velocity = {0.0, 0.0, 0.5}});
-    solver.add_share(NodeId(0), 1.0);
+    solver.add_weight(NodeId(0), 1.0);
     nodes.apply(solver);
     EXPECT_NEAR(nodes.velocities[0].z(), 0.5, 1e-12);
 }
@@ -117,8 +117,8 @@ TEST(ContactSolver, KeepsMomentumAndTakesEnergy) {
             solver.begin({.normal = random.vector(1.0).normalized(), .friction = 0.2 * (i % 3)});
             for (const double side : {1.0, -1.0}) {
                 const double w = random.uniform(0.0, 1.0);
-                solver.add_share(NodeId(random.below(40)), side * w);
-                solver.add_share(NodeId(random.below(40)), side * (1.0 - w));
+                solver.add_weight(NodeId(random.below(40)), side * w);
+                solver.add_weight(NodeId(random.below(40)), side * (1.0 - w));
             }
         }
         const auto energy = [&] {
@@ -141,13 +141,13 @@ TEST(ContactSolver, AddsUpSharesOfANode) {
     nodes.add(1.0, {0.0, 0.0, -1.0});
     ContactSolver solver(1.0);
     solver.begin({});
-    solver.add_share(NodeId(0), 0.75);
-    solver.add_share(NodeId(0), 0.25);
+    solver.add_weight(NodeId(0), 0.75);
+    solver.add_weight(NodeId(0), 0.25);
     solver.begin({});
-    solver.add_share(NodeId(0), 1.0);
-    solver.add_share(NodeId(0), -1.0);
-    ASSERT_EQ(solver.shares(0).size(), 1u);
-    EXPECT_EQ(solver.shares(0)[0].weight, 1.0);
+    solver.add_weight(NodeId(0), 1.0);
+    solver.add_weight(NodeId(0), -1.0);
+    ASSERT_EQ(solver.weights(0).size(), 1u);
+    EXPECT_EQ(solver.weights(0)[0].weight, 1.0);
     nodes.apply(solver);
     EXPECT_NEAR(nodes.velocities[0].z(), 0.0, 1e-12);
     EXPECT_TRUE(solver.impulse(1).isZero(0.0));
@@ -158,10 +158,10 @@ TEST(ContactSolver, HoldsAPointUpToItsLargestForce) {
         Nodes nodes;
         nodes.add(1.0, {0.3, 0.0, -0.4});
         ContactSolver solver(1.0);
-        ContactPoint point{.is_held = true};
+        ContactPoint point{.is_bilateral = true};
         point.largest_force = limit / one_step;
         solver.begin(point);
-        solver.add_share(NodeId(0), 1.0);
+        solver.add_weight(NodeId(0), 1.0);
         nodes.apply(solver);
         EXPECT_NEAR(nodes.velocities[0].norm(), std::max(0.0, 0.5 - limit), 1e-12);
     }
@@ -172,8 +172,8 @@ TEST(ContactSolver, HoldsNothingThatIsPrescribed) {
     Nodes nodes;
     nodes.add_fixed();
     ContactSolver solver(1.0);
-    solver.begin({.impulse = {1.0, 2.0, 3.0}, .is_held = true});
-    solver.add_share(NodeId(0), 1.0);
+    solver.begin({.impulse = {1.0, 2.0, 3.0}, .is_bilateral = true});
+    solver.add_weight(NodeId(0), 1.0);
     nodes.apply(solver);
     EXPECT_TRUE(solver.impulse(0).isZero(0.0));
 }
@@ -199,8 +199,8 @@ Nodes pulled_together(const Vec3& span, double impulse, const Vec3& velocity) {
     ContactSolver solver(1.0);
     solver.begin_thread({.length = 0.0, .stiffness = 1e12, .impulse = impulse});
     solver.begin_segment(span, Vec3(-impulse, 0.0, 0.0));
-    solver.add_share(NodeId(0), -1.0);
-    solver.add_share(NodeId(1), 1.0);
+    solver.add_weight(NodeId(0), -1.0);
+    solver.add_weight(NodeId(1), 1.0);
     const Vec3 momentum = nodes.momentum();
     nodes.apply(solver);
     EXPECT_LT((nodes.momentum() - momentum).norm(), 1e-15);

@@ -164,14 +164,14 @@ TEST(SurfaceContact, SearchesOnlyNearWhatMoves) {
         SlidingCorner body(seed);
         SurfaceContact contact({}, body.size);
         ContactSolver solver(body.size), new_solver(body.size);
-        contact.know_surface(body.model, body.surface);
+        contact.follow(body.model, body.surface);
         const std::size_t at_first = contact.num_tested();
         std::size_t num_points = 0, num_new_points = 0;
         for (int i = 0; i < num_steps; ++i) {
             // One step earlier: edges are points of contact by how fast they move.
             SurfaceContact anew({}, body.size);
             if (i % 5 == 0) {
-                anew.know_surface(body.model, body.surface);
+                anew.follow(body.model, body.surface);
                 anew.add_points(body.model, new_solver);
             }
             body.model.integrate(i * body.dt, body.dt);
@@ -219,10 +219,10 @@ TEST(SurfaceContact, OfThinPlatesIsNoneBehindThem) {
         for (const VertexId n : mesh.nodes())
             (mesh.rest_position(n).z() < thick + 0.5 * apart ? lower_nodes : upper_nodes)
                 .push_back(n);
-        physics::BoundaryConditions held;
-        held.gravity = Vec3(0, 0, 1);
-        held.constraints.push_back({.name = "lower", .nodes = physics::VertexSet(lower_nodes)});
-        Model model(mesh, table, std::move(held));
+        physics::BoundaryConditions boundary;
+        boundary.gravity = Vec3(0, 0, 1);
+        boundary.constraints.push_back({.name = "lower", .nodes = physics::VertexSet(lower_nodes)});
+        Model model(mesh, table, std::move(boundary));
         const topology::BoundarySurface surface(mesh);
         Contact contact({}, topology::mean_element_length(mesh));
         contact.follow(model, surface);

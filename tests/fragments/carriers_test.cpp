@@ -191,7 +191,7 @@ TEST(Carriers, FollowScaleMirrorAndWelding) {
     EXPECT_EQ(validate(fragments, closed), std::vector<std::string>());
     EXPECT_EQ(fragments.num_elements(),
               Mesh::build(test::jittered_cube(3, 0.1, 3)).mesh.num_elements());
-    for (const ElementId e : fragments.elements()) EXPECT_EQ(fragments.share(e), 1.0);
+    for (const ElementId e : fragments.elements()) EXPECT_EQ(fragments.volume_share(e), 1.0);
 }
 
 TEST(Carriers, MoveWithPointsThatWeldingMoves) {

@@ -53,8 +53,8 @@ void expect_sound(const FragmentMesh& fragments, const Mesh& material) {
     std::set<NodeId> used;
     for (const ElementId e : fragments.elements()) {
         ++num_elements;
-        volume += fragments.share(e) * fragments.carrier_volume(e);
-        EXPECT_GT(fragments.share(e), 0.0);
+        volume += fragments.volume_share(e) * fragments.carrier_volume(e);
+        EXPECT_GT(fragments.volume_share(e), 0.0);
         EXPECT_FALSE(fragments.cells_of(e).empty());
         for (const CellId cell : fragments.cells_of(e)) {
             ASSERT_TRUE(material.is_alive(cell));
@@ -162,7 +162,7 @@ TEST(FragmentMesh, IsTheMeshItselfWithoutDivisions) {
                 const auto fragment = with_number_of<ElementId>(e);
                 EXPECT_TRUE(std::ranges::equal(fragments.corners(fragment), material.corners(e), {},
                                                &NodeId::value, &VertexId::value));
-                EXPECT_EQ(fragments.share(fragment), 1.0);
+                EXPECT_EQ(fragments.volume_share(fragment), 1.0);
             }
             for (std::size_t i = 0; i < material.node_capacity(); ++i)
                 EXPECT_EQ(fragments.is_alive(NodeId(i)), material.is_alive(VertexId(i)));
@@ -272,7 +272,7 @@ TEST(FragmentMesh, KeepsCarriersThatAreCutInPart) {
     EXPECT_TRUE(done.mesh.rewired.empty());
     EXPECT_TRUE(done.shares.empty());
     EXPECT_FALSE(done.cells.empty());
-    for (const ElementId e : fragments.elements()) EXPECT_EQ(fragments.share(e), 1.0);
+    for (const ElementId e : fragments.elements()) EXPECT_EQ(fragments.volume_share(e), 1.0);
     expect_sound(fragments, material);
     // Opened on one half: carriers at the end of the cut stay whole.
     Mesh half = Mesh::build(test::jittered_cube(4, 0.1, 3)).mesh;

@@ -29,7 +29,7 @@ class Hand : public Device {
     std::vector<Order> orders(const Session& session) override {
         return act ? act(session) : std::vector<Order>();
     }
-    void look(const Session&, const DisplayMesh& surface) override {
+    void publish(const Session&, const DisplayMesh& surface) override {
         ++num_looks;
         EXPECT_FALSE(surface.triangles().empty());
     }
@@ -139,7 +139,7 @@ TEST(PictureMaker, ShowsTheSurfaceThatAFreshOneShows) {
         const auto picture = pictures.make(session);
         PictureMaker fresh(session);
         DisplayMesh mesh(session.world().mesh());
-        mesh.take(topology::BoundarySurface(session.world().mesh()), session.world().mesh());
+        mesh.update(topology::BoundarySurface(session.world().mesh()), session.world().mesh());
         EXPECT_EQ(pictures.mesh().triangles().size(), mesh.triangles().size());
         EXPECT_EQ(pictures.mesh().nodes().size(), mesh.nodes().size());
         ReadPicture read;
@@ -174,7 +174,7 @@ TEST(DisplayMesh, DoublesVerticesAtLipsAndBetweenRegions) {
     data.regions = {5, 9};
     const topology::Mesh mesh = topology::Mesh::build(data).mesh;
     DisplayMesh shown(mesh);
-    shown.take(topology::BoundarySurface(mesh), mesh);
+    shown.update(topology::BoundarySurface(mesh), mesh);
     EXPECT_EQ(std::vector<int>(shown.regions().begin(), shown.regions().end()),
               (std::vector<int>{5, 9}));
     EXPECT_EQ(shown.nodes().size(), 16u);

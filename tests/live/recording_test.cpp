@@ -20,13 +20,13 @@ class RandomHands {
     explicit RandomHands(unsigned seed) : random_(seed) {}
 
     void play(Session& session, Recorder& recorder, int num_ticks) {
-        std::vector<Session::Moment> marks = {session.moment()};
+        std::vector<Session::UndoPoint> marks = {session.undo_point()};
         for (int i = 0; i < num_ticks; ++i) {
             act(session);
             session.tick();
             recorder.note_tick(session);
             if (one_in(6)) act(session);  // what is done before a moment belongs to it
-            if (one_in(6)) marks.push_back(session.moment());
+            if (one_in(6)) marks.push_back(session.undo_point());
             if (one_in(12)) {
                 session.undo(marks[below(marks.size())]);
                 recorder.note_return(session);

@@ -184,7 +184,7 @@ TEST(Session, DrawsAThreadEvenlyWithinATick) {
 TEST(Session, GivesUpATickWhenAskedTo) {
     Session session(BlockFolder().scenario());
     session.tick();
-    const Session::Moment moment = session.moment();
+    const Session::UndoPoint moment = session.undo_point();
     int num_steps = 0;
     EXPECT_FALSE(session.tick([&] { return ++num_steps == 2; }));
     EXPECT_EQ(session.num_ticks(), 1u);
@@ -208,7 +208,7 @@ TEST(Session, GoesOnInTheSameBitsAfterItWentBack) {
     session.execute(order(R"({"close":"jaws"})"));
     session.execute(move("jaws", 0.02, 0.02, 0.055));
     session.tick();
-    const Session::Moment moment = session.moment();
+    const Session::UndoPoint moment = session.undo_point();
     const auto first = stroke();
     session.undo(moment);
     EXPECT_EQ(session.num_ticks(), 1u);

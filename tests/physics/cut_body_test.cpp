@@ -195,7 +195,7 @@ TEST(CutBodies, HaveTheForcesOfTheirEnergy) {
         Model& model = body.model;
         std::size_t num_cut = 0;
         for (const ElementId e : model.fragments().elements())
-            num_cut += model.fragments().share(e) != 1.0 ? 1 : 0;
+            num_cut += model.fragments().volume_share(e) != 1.0 ? 1 : 0;
         ASSERT_GT(num_cut, 50u);
         model.compute_forces(body.time);
         std::vector<Vec3> readable(model.positions().size(), Vec3::Zero());
@@ -357,16 +357,17 @@ TEST(CutBodies, AreHeldByTheConstraintsThatTheirMaterialTouches) {
         for (int i = 0; i < 5; ++i) step(model, time, 0.5 * model.stable_step());
         const auto pieces = topology::components(mesh).of_element;
         const auto velocities = model.mesh_velocities();
-        std::vector<bool> is_held(2, false);
+        std::vector<bool> is_constrained(2, false);
         for (const VertexId n : mesh.nodes())
             if (mesh.rest_position(n).x() == 0.0) {
                 // Material of the clamped face stays where it is, wherever the cut meets it.
                 EXPECT_LE(velocities[n.index()].norm(), 1e-12);
-                is_held[static_cast<std::size_t>(pieces[mesh.incident_element(n).index()])] = true;
+                is_constrained[static_cast<std::size_t>(pieces[mesh.incident_element(n).index()])] =
+                    true;
             }
         for (const VertexId n : mesh.nodes()) {
             const auto piece = static_cast<std::size_t>(pieces[mesh.incident_element(n).index()]);
-            if (is_held[piece]) continue;
+            if (is_constrained[piece]) continue;
             EXPECT_LE((velocities[n.index()] - Vec3(0, 0, -9.81 * time)).norm(), 1e-9);
         }
     }
@@ -393,7 +394,8 @@ TEST(CutBodies, KeepTheirClampedFaceBetweenCutsNearEachOther) {
             follow(model, test::cut_along_plane(mesh, point + distance / n * normal,
                                                 normal + random.vector(0.02)));
             for (const ElementId e : model.fragments().elements())
-                num_small += model.fragments().share(e) < fragments::default_light_share ? 1 : 0;
+                num_small +=
+                    model.fragments().volume_share(e) < fragments::default_light_share ? 1 : 0;
             double time = 0.0;
             for (int i = 0; i < 20; ++i) step(model, time, 0.5 * model.stable_step());
             const auto positions = model.mesh_positions();

@@ -267,7 +267,7 @@ struct StepOf {
         state = state_of(model);
         for (std::size_t s = 0; s < model.num_constraints(); ++s) {
             reactions.push_back(model.reactions()[s].force);
-            reactions.push_back(model.reactions()[s].moment);
+            reactions.push_back(model.reactions()[s].torque);
         }
         set_state(model, before.state, now_time);
         model.set_history(before.history);

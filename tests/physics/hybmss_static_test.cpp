@@ -157,7 +157,7 @@ TEST(HybMssStatic, PlatesFeelForceAndTorqueOfTheReference) {
         const auto F = c.row.at("F").get<std::array<double, 3>>();
         const Vec3 expected(F[0], F[1], F[2]);
         if (c.kind() == "tors") {
-            EXPECT_NEAR(body.model().reactions()[1].moment.z(), c.at("torque"),
+            EXPECT_NEAR(body.model().reactions()[1].torque.z(), c.at("torque"),
                         tolerance * c.at("torque"));
         } else {
             EXPECT_LE((force - expected).norm(), tolerance * expected.norm());

@@ -62,7 +62,7 @@ void expect_same_motion(const Model& one, const Model& other) {
                 1e-13 * (1.0 + one.dissipated_energy()));
     for (std::size_t i = 0; i < one.reactions().size(); ++i) {
         EXPECT_TRUE(one.reactions()[i].force.isApprox(other.reactions()[i].force, 1e-12));
-        EXPECT_TRUE(one.reactions()[i].moment.isApprox(other.reactions()[i].moment, 1e-12));
+        EXPECT_TRUE(one.reactions()[i].torque.isApprox(other.reactions()[i].torque, 1e-12));
     }
 }
 

@@ -90,7 +90,7 @@ TEST(Statics, EndWhereDampedMotionEnds) {
             const double force = moving.reactions()[i].force.norm();
             EXPECT_LE((still.reactions()[i].force - moving.reactions()[i].force).norm(),
                       1e-6 * force);
-            EXPECT_LE((still.reactions()[i].moment - moving.reactions()[i].moment).norm(),
+            EXPECT_LE((still.reactions()[i].torque - moving.reactions()[i].torque).norm(),
                       1e-6 * force);
         }
         EXPECT_EQ(still.totals().kinetic_energy, 0.0);

@@ -89,7 +89,7 @@ Outcome outcome_of_steps(Model& model) {
                     model.dissipated_energy()};
     for (std::size_t i = 0; i < model.num_constraints(); ++i) {
         outcome.reactions.push_back(model.reactions()[i].force);
-        outcome.moments.push_back(model.reactions()[i].moment);
+        outcome.moments.push_back(model.reactions()[i].torque);
     }
     return outcome;
 }

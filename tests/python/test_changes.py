@@ -128,6 +128,23 @@ class Handles(unittest.TestCase):
         body.step()
         self.assertEqual(knife.current_pose, incise.Pose([0.03, 0, 0.06]))
 
+    def test_tools_go_on_after_undo_and_restore(self) -> None:
+        """Whatever is said of a tool from before, in any order, is of one tool."""
+        for go_back in (lambda body: body.undo(), lambda body: body.restore(body.save())):
+            for is_pose_first in (True, False):
+                body = support.world()
+                knife = body.add_tool("knife", support.BLADE, incise.Pose([0.07, 0, 0.06]))
+                body.undo_point()
+                go_back(body)
+                if is_pose_first:
+                    knife.pose = incise.Pose([0.07, 0, -0.02])
+                knife.withdraw()
+                if not is_pose_first:
+                    knife.pose = incise.Pose([0.07, 0, -0.02])
+                body.run_until(0.02)
+                self.assertEqual(body.ledger()["components"], 2)
+                self.assertFalse(knife.is_present)
+
     def test_call_that_ends_early_leaves_no_cut_behind(self) -> None:
         """The plane has cut in the first step; the call ends at a later one."""
         body = support.world()
@@ -163,7 +180,7 @@ class Contacts(unittest.TestCase):
             ball.pose = incise.Pose([0.06, 0.02, 0.0501 - 2e-5 * i])
             report = body.step(dt=0.3 * body.stable_step)
         contacts = ball.contacts
-        self.assertEqual(report.num_parts, 1)
+        self.assertEqual(report.num_substeps, 1)
         n = len(contacts)
         self.assertGreater(n, 0)
         for array, shape in ((contacts.points, (n, 3)), (contacts.normals, (n, 3)),

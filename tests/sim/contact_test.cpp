@@ -193,7 +193,7 @@ TEST(Contact, OfASolidIsThatOfItsShape) {
 TEST(Contact, OfAFastSmallBallIsNotMissed) {
     auto [world, ball] = ball_above(0.0, 0.003);
     const auto down = StepInputs().move(ball, at({0.05, 0.05, size - 0.01}));
-    EXPECT_GT(world.step(0.5 * world.stable_step(), down).num_parts, 10u);
+    EXPECT_GT(world.step(0.5 * world.stable_step(), down).num_substeps, 10u);
     double above = 0.0;
     for (const VertexId n : nodes_where(world, [](const Vec3& x) {
              return x.z() == size && std::hypot(x.x() - 0.05, x.y() - 0.05) < 1e-9;
@@ -219,7 +219,7 @@ TEST(Contact, InAStepOfPartsBalancesMomentum) {
         const auto before = world.ledger().body_totals().totals;
         const StepReport& report =
             world.step(dt, StepInputs().move(ball, at({0.05, 0.05, size + radius - move * i})));
-        EXPECT_GT(report.num_parts, 1u);
+        EXPECT_GT(report.num_substeps, 1u);
         const Vec3 force = world.reaction(world.constraints()[0]).force - report.tools[0].force +
                            before.mass * Vec3(0, 0, -9.81);
         const Vec3 change = world.ledger().body_totals().totals.momentum - before.momentum;

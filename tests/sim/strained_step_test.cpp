@@ -55,12 +55,12 @@ TEST(StrainedStep, DividesLongerSteps) {
         const double from = world.time(), bound = world.stable_step();
         const StepReport& report = world.step(dt);
         EXPECT_EQ(report.to, from + dt);
-        EXPECT_LE(dt, bound * static_cast<double>(report.num_parts) * (1.0 + 1e-7));
-        EXPECT_GT(dt, bound * static_cast<double>(report.num_parts - 1));
-        most = std::max(most, report.num_parts);
+        EXPECT_LE(dt, bound * static_cast<double>(report.num_substeps) * (1.0 + 1e-7));
+        EXPECT_GT(dt, bound * static_cast<double>(report.num_substeps - 1));
+        most = std::max(most, report.num_substeps);
     }
     EXPECT_GT(most, 1u);
-    EXPECT_EQ(world.step(0.8 * world.stable_step()).num_parts, 1u);
+    EXPECT_EQ(world.step(0.8 * world.stable_step()).num_substeps, 1u);
     EXPECT_NE(input_error_of([&] {
                   world.step(1.01 * world.rest_stable_step());
               }).find("above the stable step"),

@@ -52,7 +52,7 @@ TEST_P(TouchingPrograms, KeepMomentumAndTakeEnergyFromToolsOnly) {
             scale = std::max(scale, speed_of(world));
             ASSERT_TRUE(std::isfinite(scale)) << "step " << i;
             ASSERT_LE(error.norm(), 1e-13 * scale) << "step " << i;
-            const double dt = (report.to - report.from) / static_cast<double>(report.num_parts);
+            const double dt = (report.to - report.from) / static_cast<double>(report.num_substeps);
             const double energy = test::present_energy(world.model(), dt);
             const double work = world.ledger().body_totals().external_work;
             energy_scale = std::max({energy_scale, energy, std::abs(work)});

@@ -392,7 +392,7 @@ TEST(ToolContacts, AddUpToTheForceOnTheTool) {
                 .move(ball, at({0.03 + 1e-5 * i, 0.05, size + 0.0201 - 1e-5 * i}))
                 .move(jaws, at({0.1 + 1e-5 * i, 0.05, 0.08}));
         const StepReport& report = world.step(0.5 * world.rest_stable_step(), inputs);
-        if (report.num_parts > 1) continue;
+        if (report.num_substeps > 1) continue;
         for (const ToolState& state : report.tools) {
             const auto points = world.tool_contacts(state.tool);
             Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();

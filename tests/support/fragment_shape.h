@@ -32,7 +32,8 @@ inline FragmentShape shape_of(
         std::vector<std::int64_t> cells;
         for (const CellId cell : fragments.cells_of(e)) cells.push_back(name(cell));
         std::sort(cells.begin(), cells.end());
-        for (const std::int64_t cell : cells) shape.of_cell[cell] = {cells, fragments.share(e)};
+        for (const std::int64_t cell : cells)
+            shape.of_cell[cell] = {cells, fragments.volume_share(e)};
         const auto nodes = fragments.corners(e);
         for (std::size_t k = 0; k < nodes.size(); ++k)
             corners[nodes[k]].emplace_back(cells.front(), static_cast<int>(k));

@@ -14,7 +14,7 @@
 namespace incise::scenario {
 
 /// A tool that a hand leads.
-struct HeldTool {
+struct HandTool {
     std::string kind;  ///< such as "blade"
     cutting::ToolShape shape;
     std::vector<std::string> warnings;
@@ -28,7 +28,7 @@ struct HeldTool {
 /// @param mesh            the mesh that the tool is for
 /// @param why_no_contact  why tools cannot touch tissue; empty if they can: why_no_contact()
 /// Throws InputError with all problems, one a line.
-HeldTool build_held_tool(const Value& definition, const std::filesystem::path& folder,
+HandTool build_hand_tool(const Value& definition, const std::filesystem::path& folder,
                          const topology::Mesh& mesh, const std::string& why_no_contact);
 
 /// Returns why a run has no contact, for messages; empty if it has.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/scenario/held_tool.h"
+#include "incise/scenario/hand_tool.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ topology::Mesh mesh_of(topology::CellKind kind) {
         .mesh;
 }
 
-HeldTool build(const Value& definition, const std::string& why_no_contact = {}) {
-    return build_held_tool(definition, ".", mesh_of(topology::CellKind::tetrahedron),
+HandTool build(const Value& definition, const std::string& why_no_contact = {}) {
+    return build_hand_tool(definition, ".", mesh_of(topology::CellKind::tetrahedron),
                            why_no_contact);
 }
 
@@ -44,8 +44,8 @@ std::string refusal_of(const Value& definition, const std::string& why_no_contac
 const Value edge = list({point(0, 0, 0), point(0, 0, 0.1)});
 const Value ball = table({{"sphere", table({{"radius", number(0.01)}})}});
 
-TEST(HeldTool, IsWhatTheKeysOfAScenarioSay) {
-    const HeldTool blade =
+TEST(HandTool, IsWhatTheKeysOfAScenarioSay) {
+    const HandTool blade =
         build(table({{"kind", text("blade")}, {"edge", edge}, {"toughness", number(160.0)}}));
     EXPECT_EQ(blade.kind, "blade");
     const auto& shape = std::get<cutting::Blade>(blade.shape);
@@ -53,26 +53,26 @@ TEST(HeldTool, IsWhatTheKeysOfAScenarioSay) {
     EXPECT_EQ(shape.toughness, 160.0);
     EXPECT_EQ(shape.mode, cutting::CutMode::split);
 
-    const HeldTool jaws = build(table({{"kind", text("grasper")}, {"shape", ball}}));
+    const HandTool jaws = build(table({{"kind", text("grasper")}, {"shape", ball}}));
     EXPECT_TRUE(std::holds_alternative<cutting::Grasper>(jaws.shape));
-    const HeldTool burr = build(table({{"kind", text("carver")}, {"shape", ball}}));
+    const HandTool burr = build(table({{"kind", text("carver")}, {"shape", ball}}));
     EXPECT_TRUE(std::holds_alternative<cutting::Carver>(burr.shape));
-    const HeldTool thread =
+    const HandTool thread =
         build(table({{"kind", text("suture")}, {"points", edge}, {"stiffness", number(200.0)}}));
     EXPECT_EQ(std::get<cutting::Suture>(thread.shape).stiffness, 200.0);
-    const HeldTool plane =
+    const HandTool plane =
         build(table({{"kind", text("cut")},
                      {"plane", table({{"point", point(0, 0, 0)}, {"normal", point(1, 0, 0)}})}}));
     EXPECT_TRUE(std::holds_alternative<cutting::PlaneCut>(plane.shape));
 }
 
-TEST(HeldTool, TakesTheModeThatSuitsTheMesh) {
+TEST(HandTool, TakesTheModeThatSuitsTheMesh) {
     const Value blade = table({{"kind", text("blade")}, {"edge", edge}});
-    const HeldTool made = build_held_tool(blade, ".", mesh_of(topology::CellKind::hexahedron), "");
+    const HandTool made = build_hand_tool(blade, ".", mesh_of(topology::CellKind::hexahedron), "");
     EXPECT_EQ(std::get<cutting::Blade>(made.shape).mode, cutting::CutMode::separate);
 }
 
-TEST(HeldTool, RefusesAllThatIsWrongAtOnce) {
+TEST(HandTool, RefusesAllThatIsWrongAtOnce) {
     const std::string refusal = refusal_of(table({{"kind", text("blade")},
                                                   {"edge", list({point(0, 0, 0)})},
                                                   {"toughness", number(-1.0)},
@@ -84,7 +84,7 @@ TEST(HeldTool, RefusesAllThatIsWrongAtOnce) {
     EXPECT_THAT(refusal, HasSubstr("colour"));
 }
 
-TEST(HeldTool, RefusesWhatIsNoToolOrCannotTouch) {
+TEST(HandTool, RefusesWhatIsNoToolOrCannotTouch) {
     EXPECT_THAT(refusal_of(number(3.0)), HasSubstr("is the number 3, not a table"));
     EXPECT_THAT(refusal_of(table({})), HasSubstr("'kind'"));
     EXPECT_THAT(refusal_of(table({{"kind", text("scalpel")}})), HasSubstr("blade"));

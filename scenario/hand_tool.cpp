@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/scenario/held_tool.h"
+#include "incise/scenario/hand_tool.h"
 
 #include <utility>
 
@@ -9,13 +9,13 @@
 
 namespace incise::scenario {
 
-HeldTool build_held_tool(const Value& definition, const std::filesystem::path& folder,
+HandTool build_hand_tool(const Value& definition, const std::filesystem::path& folder,
                          const topology::Mesh& mesh, const std::string& why_no_contact) {
-    HeldTool tool;
+    HandTool tool;
     ToolSpec spec =
         read_definition(definition, "tool", "kind = \"blade\"", tool.warnings,
                         [&](const Table& table, Diagnostics& diagnostics) {
-                            return read_held_tool(table, folder, why_no_contact, diagnostics);
+                            return read_hand_tool(table, folder, why_no_contact, diagnostics);
                         });
     tool.kind = spec.name;
     tool.shape = build_tool(with_mode(std::move(spec), mesh), tool.warnings).shape;
