@@ -90,7 +90,7 @@ frame of the world.)");
                                "jaws.")
         .def_property_readonly("depths", held(&ToolContacts::depths),
                                "By how much tool and tissue overlap there, shape (N,). Below 0: "
-                               "they met in the\nlast part of the step. 0 in jaws.")
+                               "they met in the\nlast substep. 0 in jaws.")
         .def_property_readonly("normal_forces", held(&ToolContacts::normal_forces),
                                "The forces on the tool along the normals, shape (N, 3).")
         .def_property_readonly("friction_forces", held(&ToolContacts::friction_forces),
@@ -172,9 +172,9 @@ toughness. For a suture it is the force on its thread at its first point; its le
                                held(+[](const Tool& tool) { return contacts_of(tool); }),
                                R"(Where tissue touches a probe or a grasper, a ToolContacts, anew.
 
-It has the points with a force in the last step; in a step of several parts those in the last part.
-In a step of one part their forces add up to the force of a call of that step. Other tools have
-none, and none has any after restore() or undo().)")
+It has the points with a force in the last step; of several substeps, those in the last one. In a
+step of one substep their forces add up to the force of a call of that step. Other tools have none,
+and none has any after restore() or undo().)")
         .def_property_readonly(
             "definition", held(+[](const Tool& tool) -> py::object {
                 const auto& shape = driver_of(tool).world().tool(tool.id).shape;

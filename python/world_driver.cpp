@@ -177,7 +177,10 @@ Report WorldDriver::step(std::optional<double> dt, std::uint64_t n, const Poll& 
 
 Report WorldDriver::run_until(double time, const Poll& poll) {
     const double from = world_.time();
-    if (!(time >= from && std::isfinite(time)))
+    if (!std::isfinite(time))
+        throw InputError("the world cannot run until " + format_number(time) +
+                         " s: the time must be finite");
+    if (!(time >= from))
         throw InputError("the world cannot run until " + format_number(time) + " s: its time is " +
                          format_number(from) + " s");
     if (time == from) {

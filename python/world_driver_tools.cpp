@@ -156,10 +156,9 @@ sim::ConstraintId WorldDriver::constraint(const std::string& name) const {
 
 void WorldDriver::require_new_constraint(const std::string& what, const std::string& name) const {
     require_name(what, name);
-    for (std::size_t i = 0; i < world_.model().num_constraints(); ++i)
-        if (world_.model().constraint_name(i) == name)
-            throw InputError(what + " '" + name +
-                             "': the world has a constraint of this name already");
+    const auto& all = world_.model().constraints().all();
+    if (std::ranges::find(all, name, &physics::Constraint::name) != all.end())
+        throw InputError(what + " '" + name + "': the world has a constraint of this name already");
 }
 
 void WorldDriver::add_constraint(const std::string& name, const scenario::Value& definition) {

@@ -108,7 +108,7 @@ struct StepReport {
     std::vector<Edit> edits;       ///< in order of execution
     /// Those present at the end of the step, and those with a force that were withdrawn at its end.
     std::vector<ToolState> tools;
-    ContactState contact;  ///< in the last part of the step
+    ContactState contact;  ///< in the last substep of the step
 };
 
 /// Thrown if a tool meets something that it cannot cut.

@@ -27,17 +27,21 @@ physics::MaterialTable with_material(physics::MaterialTable table,
     const auto is_meant = [&](int region) {
         return regions.empty() || std::ranges::find(regions, region) != regions.end();
     };
-    for (const int region : regions)
-        if (!table.of_region.contains(region))
-            throw InputError("the body has no region " + std::to_string(region));
+    for (const int region : regions) {
+        if (table.of_region.contains(region)) continue;
+        std::string known;
+        for (const auto& [one, index] : table.of_region)
+            known += (known.empty() ? "" : ", ") + std::to_string(one);
+        throw InputError("the body has no region " + std::to_string(region) + ": it has " + known);
+    }
     // That of the first region with a material that no other region has; else it is a new one.
     std::size_t place = table.materials.size();
-    for (const auto& [region, index] : table.of_region)
-        if (place == table.materials.size() && is_meant(region) &&
+    for (const auto& entry : table.of_region)
+        if (place == table.materials.size() && is_meant(entry.first) &&
             std::ranges::none_of(table.of_region, [&](const auto& other) {
-                return other.second == index && !is_meant(other.first);
+                return other.second == entry.second && !is_meant(other.first);
             }))
-            place = index;
+            place = entry.second;
     if (place == table.materials.size()) table.materials.emplace_back();
     table.materials[place] = material;
     for (auto& [region, index] : table.of_region)
