@@ -156,5 +156,7 @@ void register_mesh(py::module_& module);
 void register_report(py::module_& module);
 void register_tools(py::module_& module);
 void register_world(py::module_& module);
+/// Adds to incise.World what adds tools, constraints and loads to a world, and changes it.
+void register_world_parts(py::class_<Handle, World>& type);
 
 }  // namespace incise::python
