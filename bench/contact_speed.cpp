@@ -73,7 +73,7 @@ ContactRate measure_contact(std::size_t num_elements, double friction, double se
 
     physics::SemiImplicitEuler with, without;
     with.add_projection(contact);
-    const double dt = 0.8 * model.rest_stable_step();
+    const double dt = 0.8 * model.structure().rest_stable_step();
     double time = 0.0;
     const auto step = [&](physics::Integrator& integrator) {
         integrator.step(model, time, dt);

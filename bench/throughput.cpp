@@ -15,6 +15,7 @@
 #include "incise/physics/body/model.h"
 #include "incise/physics/elements/simd_heml_elements.h"
 #include "incise/physics/elements/simd_hybmss_elements.h"
+#include "incise/physics/solve/explicit_step.h"
 #include "incise/scenario/elastic_constants.h"
 #include "incise/scenario/tissue_catalog.h"
 #include "incise/topology/box_mesh.h"
@@ -111,8 +112,9 @@ struct StepTimes {
 StepTimes time_steps(MovingBody& body, double seconds) {
     // Forces are timed within whole steps, so that the caches are in the state of a run.
     double forces = std::numeric_limits<double>::infinity();
+    physics::ExplicitStep one_step;
     const double step = best_time(seconds, [&] {
-        body.model.integrate(0.0, body.dt);
+        one_step.move(body.model, 0.0, body.dt);
         forces = std::min(forces, best_time(0.0, [&] { body.model.compute_forces(0.0); }));
     });
     return {forces, step};
@@ -147,9 +149,10 @@ StepRate measure_steps(const topology::Mesh& mesh, const Measured& measured, int
     if (num_threads == 1) {
         std::vector<Vec3> sums(mesh.node_capacity(), Vec3::Zero());
         const physics::Model& model = body.model;
-        const physics::EndOfStep state{model.positions(), model.history(), body.dt};
-        rate.reference =
-            per_element * best_time(seconds, [&] { model.elements().add_forces(state, sums); });
+        const physics::EndOfStep state{model.positions(), model.state().history(), body.dt};
+        rate.reference = per_element * best_time(seconds, [&] {
+                             model.structure().elements().add_forces(state, sums);
+                         });
         if (const auto* links = std::get_if<physics::HyperElasticLinks>(&measured.material.method))
             rate.arithmetic = 1e9 * measure_arithmetic(links->law);
         rate.reference_ratio = (*rate.reference + rate.step - rate.forces) / rate.step;

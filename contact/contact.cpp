@@ -61,19 +61,20 @@ double Contact::normal_work(const physics::Model& model) const {
     return work;
 }
 
-void Contact::project(physics::Model& model, double /*time*/, double dt) {
+void Contact::project(physics::Model& model, physics::ExplicitStep& step, double /*time*/,
+                      double dt) {
     const auto masses = model.masses();
     inverse_masses_.resize(masses.size());
     for (const NodeId node : solver_.nodes()) {
         const std::size_t n = node.index();
         inverse_masses_[n].setZero();
         if (masses[n] == 0.0) continue;  // dead
-        const auto* constraint_of = model.constraints().of_node(n);
+        const auto* constraint_of = model.boundary().constraints().of_node(n);
         for (int c = 0; c < 3; ++c)
             if (!constraint_of || (*constraint_of)[static_cast<std::size_t>(c)] < 0)
-                inverse_masses_[n][c] = model.response_to_impulses() / masses[n];
+                inverse_masses_[n][c] = step.response_to_impulses() / masses[n];
     }
-    const double rest_step = model.rest_stable_step();
+    const double rest_step = model.structure().rest_stable_step();
     solver_.solve(model.velocities(), inverse_masses_, dt, rest_step, spare_energy_ >= 0.0);
     take_impulses(dt);
     impulses_.assign(masses.size(), Vec3::Zero());
@@ -83,7 +84,7 @@ void Contact::project(physics::Model& model, double /*time*/, double dt) {
         for (const NodeWeight& share : solver_.weights(i))
             impulses_[share.node.index()] += share.weight * solver_.impulse(i);
     }
-    model.give_impulses(impulses_);
+    step.give_impulses(model, impulses_);
     // What was taken is forgotten as fast as an overlap goes. A debt stays until it is paid.
     if (spare_energy_ > 0.0) spare_energy_ *= std::exp(-ContactSolver::correction * dt / rest_step);
     spare_energy_ -= normal_work(model);
@@ -97,8 +98,8 @@ std::vector<std::pair<VertexId, Vec3>> Contact::node_forces() const {
 }
 
 void Contact::book_work(physics::Model& model) {
-    const double loss = tool_work_ - model.impulse_work();
-    model.record_work(loss, loss);
+    const double loss = tool_work_ - model.energetics().impulse_work();
+    model.energetics().record_work(loss, loss);
     dissipation_ += loss - fracture_;
     fracture_energy_ += fracture_;
 }

@@ -37,7 +37,8 @@ class Contact final : public physics::VelocityProjection {
     void book_work(physics::Model& model);
 
     bool prepare(const physics::Model& model, double time, double dt) override;
-    void project(physics::Model& model, double time, double dt) override;
+    void project(physics::Model& model, physics::ExplicitStep& step, double time,
+                 double dt) override;
 
     /// Returns the triangles of the body.
     TissueSurface surface() const { return tissue_.surface(); }

@@ -45,7 +45,7 @@ constexpr double rounding = 1e-10;
 }  // namespace
 
 void add_shares(const physics::Model& model, VertexId n, double weight, ContactSolver& solver) {
-    model.embedding()[n].for_each(
+    model.structure().embedding()[n].for_each(
         [&](NodeId node, double share) { solver.add_weight(node, weight * share); });
 }
 

@@ -64,7 +64,7 @@ void SutureContact::add_points(const physics::Model& model, const TissueSurface&
     first_segment_ = solver.size();
     solver.begin_thread({length_, suture_.stiffness, suture_.max_force, tension_ * dt});
     const auto add_end = [&](const topology::CellPoint& at, double sign) {
-        model.embedding().for_each(model.mesh(), at, [&](NodeId node, double weight) {
+        model.structure().embedding().for_each(model.mesh(), at, [&](NodeId node, double weight) {
             solver.add_weight(node, sign * weight);
         });
     };

@@ -47,7 +47,7 @@ int main() {
               << "\ncomponents: " << num_components << "\ncut area, m2: " << cut_area;
     // More digits hang on the last bits of the pose: by them faces of the cut touch, or do not yet.
     std::cout << "\nkinetic energy, J: " << std::setprecision(2)
-              << world.model().totals().kinetic_energy << '\n';
+              << world.model().energetics().totals().kinetic_energy << '\n';
     io::write_mesh("hello_cut.vtu", topology::to_mesh_data(edited, world.positions()));
     return num_components == 2 ? 0 : 1;
 }

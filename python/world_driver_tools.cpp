@@ -149,14 +149,14 @@ bool WorldDriver::is_in_tissue(sim::ToolId tool) const {
 // --- Constraints and loads
 
 sim::ConstraintId WorldDriver::constraint(const std::string& name) const {
-    for (std::size_t i = 0; i < world_.model().num_constraints(); ++i)
-        if (world_.model().constraint_name(i) == name) return world_.constraints()[i];
+    for (std::size_t i = 0; i < world_.model().boundary().constraints().size(); ++i)
+        if (world_.model().boundary().constraints().name(i) == name) return world_.constraints()[i];
     throw InputError("the world has no constraint '" + name + "'");
 }
 
 void WorldDriver::require_new_constraint(const std::string& what, const std::string& name) const {
     require_name(what, name);
-    const auto& all = world_.model().constraints().all();
+    const auto& all = world_.model().boundary().constraints().all();
     if (std::ranges::find(all, name, &physics::Constraint::name) != all.end())
         throw InputError(what + " '" + name + "': the world has a constraint of this name already");
 }
@@ -207,7 +207,7 @@ void WorldDriver::warn_of_jump(const physics::Constraint& constraint) {
 
 void WorldDriver::add_load(const std::string& name, const scenario::Value& definition) {
     require_name("load", name);
-    const auto& all = world_.model().loads().all();
+    const auto& all = world_.model().boundary().loads().all();
     if (std::ranges::find(all, name, &physics::Load::name) != all.end())
         throw InputError("load '" + name + "': the world has a load of this name already");
     std::vector<std::string> warnings;
@@ -260,7 +260,7 @@ void WorldDriver::release(const std::string& name) {
 }
 
 sim::LoadId WorldDriver::load(const std::string& name) const {
-    const auto& all = world_.model().loads().all();
+    const auto& all = world_.model().boundary().loads().all();
     const auto found = std::ranges::find(all, name, &physics::Load::name);
     if (found == all.end()) throw InputError("the world has no load '" + name + "'");
     return world_.loads()[static_cast<std::size_t>(found - all.begin())];
@@ -268,7 +268,7 @@ sim::LoadId WorldDriver::load(const std::string& name) const {
 
 double WorldDriver::load_factor(const std::string& name) const {
     load(name);
-    const auto& all = world_.model().loads().all();
+    const auto& all = world_.model().boundary().loads().all();
     const auto& curve = std::ranges::find(all, name, &physics::Load::name)->factor;
     return curve.is_empty() ? 1.0 : curve.at(world_.time());
 }

@@ -151,21 +151,23 @@ elements, and BufferError while a view is open.)")
         .def_property_readonly(
             "gravity",
             [](const World& world) {
-                return array_of(driver_of(world).world().model().loads().gravity());
+                return array_of(driver_of(world).world().model().boundary().loads().gravity());
             },
             "The gravity, m/s2. Shape (3,), a copy. See set_gravity().")
         .def_property_readonly(
             "damping",
-            [](const World& world) { return driver_of(world).world().model().damping(); },
+            [](const World& world) {
+                return driver_of(world).world().model().boundary().damping();
+            },
             "The mass-proportional damping, 1/s. See set_damping().")
         .def_property_readonly(
             "constraints",
             [](const World& world) {
                 py::dict dict;
                 const physics::Model& model = driver_of(world).world().model();
-                for (std::size_t i = 0; i < model.num_constraints(); ++i)
-                    dict[py::str(model.constraint_name(i))] =
-                        Constraint{world, model.constraint_name(i)};
+                for (std::size_t i = 0; i < model.boundary().constraints().size(); ++i)
+                    dict[py::str(model.boundary().constraints().name(i))] =
+                        Constraint{world, model.boundary().constraints().name(i)};
                 return dict;
             },
             "All constraints by name: a dict of Constraint, with their reaction forces.")
@@ -173,7 +175,8 @@ elements, and BufferError while a view is open.)")
             "loads",
             [](const World& world) {
                 py::dict dict;
-                for (const physics::Load& load : driver_of(world).world().model().loads().all())
+                for (const physics::Load& load :
+                     driver_of(world).world().model().boundary().loads().all())
                     dict[py::str(load.name)] = Load{world, load.name};
                 return dict;
             },

@@ -75,7 +75,7 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
                                       [&](VertexId n) { return forces[n.index()]; }));
     }
     if (has(scenario::Field::mass)) {
-        const auto masses = model.mesh_masses();
+        const auto masses = model.structure().mesh_masses();
         points.push_back(field<double>(name(scenario::Field::mass), 1, nodes,
                                        [&](VertexId n) { return masses[n.index()]; }));
     }
@@ -89,7 +89,7 @@ FrameBuilder::FrameBuilder(const physics::Model& model, double time,
     cells.push_back(
         field<std::int64_t>("element_id", 1, cells_, [&](CellId e) { return mesh.label(e); }));
     const fragments::FragmentMesh& fragments = model.fragments();
-    if (const auto fibres = model.fibres(); !fibres.empty())
+    if (const auto fibres = model.structure().fibres(); !fibres.empty())
         cells.push_back(field<double>("fibre", 3, cells_, [&](CellId e) {
             return fibres[fragments.fragment_of_cell(e).index()];
         }));

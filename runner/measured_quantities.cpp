@@ -59,9 +59,9 @@ Quantities history_row(const sim::World& world, double time_step,
                       contact.max_penetration,
                       contact.dissipation,
                       contact.fracture_energy});
-    for (std::size_t s = 0; s < model.num_constraints(); ++s) {
+    for (std::size_t s = 0; s < model.boundary().constraints().size(); ++s) {
         const auto& [reaction, torque] = body_totals.reactions[s];
-        append(row, scenario::reaction_quantities(model.constraint_name(s)),
+        append(row, scenario::reaction_quantities(model.boundary().constraints().name(s)),
                std::array{reaction.x(), reaction.y(), reaction.z(), torque.x(), torque.y(),
                           torque.z()});
     }
@@ -90,11 +90,12 @@ Quantities summary_quantities(const sim::World& world, double time_step,
     }
     const sim::Ledger& ledger = world.ledger();
     append(quantities, scenario::run_quantities,
-           std::array{world.model().totals().gravity_energy, static_cast<double>(edits.size()),
-                      static_cast<double>(removed), static_cast<double>(split),
-                      static_cast<double>(added), static_cast<double>(opened), cut_area,
-                      mass_removed, ledger.mass_error(), ledger.energy_error(),
-                      world.model().volume_change(), world.model().max_displacement()});
+           std::array{world.model().energetics().totals().gravity_energy,
+                      static_cast<double>(edits.size()), static_cast<double>(removed),
+                      static_cast<double>(split), static_cast<double>(added),
+                      static_cast<double>(opened), cut_area, mass_removed, ledger.mass_error(),
+                      ledger.energy_error(), world.model().energetics().volume_change(),
+                      world.model().max_displacement()});
     return quantities;
 }
 

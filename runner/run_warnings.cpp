@@ -77,7 +77,7 @@ bool RunWarnings::add_loss(const sim::World& world, const std::string& when,
     constexpr double least_volume_ratio = 0.01;
     const physics::Model& model = world.model();
     std::size_t num_crushed = 0;
-    if (model.min_volume_ratio() < least_volume_ratio)
+    if (model.energetics().min_volume_ratio() < least_volume_ratio)
         for (const ElementId e : model.fragments().elements())
             num_crushed += model.element_result(e).volume_ratio < least_volume_ratio;
     std::ostringstream text;

@@ -227,7 +227,7 @@ void RunWriter::finish(const Simulation& simulation, const Outcome& outcome) {
     if (!command.empty()) summary["command"] = command;
     if (!directory.empty()) summary["directory"] = directory;
     if (!started.empty()) summary["started"] = started;
-    summary["threads"] = simulation.model().num_threads();
+    summary["threads"] = simulation.model().workers().num_threads();
     const auto quantities = has_failed ? last_row_ : summary_quantities(simulation);
     summary["edits"] = simulation.edits().size();
     for (const auto& [name, value] : quantities) summary[name] = value;

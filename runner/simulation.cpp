@@ -35,7 +35,7 @@ std::uint64_t fingerprint_of(const physics::Model& model,
     for (const std::int64_t row : mesh.source_carriers().of_cell) ar(row);
     for (const auto& corners : mesh.source_carriers().corners)
         for (const Vec3& x : corners) ar(x);
-    for (const Vec3& fibre : model.fibres()) ar(fibre);
+    for (const Vec3& fibre : model.structure().fibres()) ar(fibre);
     for (const scenario::ToolSpec& tool : tools) {
         if (tool.surface) ar(io::load_input_file(tool.surface->path).bytes);
     }

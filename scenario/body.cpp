@@ -343,7 +343,7 @@ void check_model(const Scenario& scenario, Parts& parts) {
     if (!parts.source || !parts.materials) return;
     parts.problems.try_to("", [&] {
         auto model = make_model(scenario, parts.source->mesh, *parts.materials, {});
-        const double step = step_limit(scenario, model, model.rest_stable_step());
+        const double step = step_limit(scenario, model, model.structure().rest_stable_step());
         if (!scenario.dynamics.is_explicit()) return;
         warn_of_costly_elements(scenario, model, parts.warnings);
         const double num_steps = scenario.dynamics.end_time / step;

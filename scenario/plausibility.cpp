@@ -173,7 +173,7 @@ std::optional<std::string> warning_of_costly_elements(const physics::Model& mode
     constexpr double costly = 0.5;  // of the step without them
     std::vector<std::pair<double, ElementId>> steps;
     for (const ElementId e : model.fragments().elements())
-        steps.emplace_back(model.element_stable_step(e), e);
+        steps.emplace_back(model.structure().element_stable_step(e), e);
     const auto num_compared = static_cast<std::ptrdiff_t>(std::min(most_named + 1, steps.size()));
     std::ranges::partial_sort(steps, steps.begin() + num_compared);
     for (std::size_t k = 1; k <= most_named && k < steps.size(); ++k) {
@@ -186,8 +186,8 @@ std::optional<std::string> warning_of_costly_elements(const physics::Model& mode
             text << (i == 0 ? "" : ", ")
                  << model.mesh().label(model.fragments().cells_of(steps[i].second).front());
         text << (k == 1 ? " is" : " are") << " so thin or stiff that steps are "
-             << model.rest_stable_step() << " s; without " << (k == 1 ? "it" : "them")
-             << " they would be about " << model.rest_stable_step() / ratio
+             << model.structure().rest_stable_step() << " s; without " << (k == 1 ? "it" : "them")
+             << " they would be about " << model.structure().rest_stable_step() / ratio
              << " s: mesh anew there";
         return text.str();
     }

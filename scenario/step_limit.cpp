@@ -32,7 +32,8 @@ namespace {
     if (dynamics.time_step)
         text << "raise dynamics.time_step";
     else
-        text << "check shape and material of element " << model.mesh().label(model.limiting_cell())
+        text << "check shape and material of element "
+             << model.mesh().label(model.structure().limiting_cell())
              << ", which is the smallest or stiffest for its mass";
     if (num_steps > 0) throw PhysicsError(text.str());  // the cause is an edit, not the scenario
     throw BodyError(dynamics.time_step ? dynamics.time_step_location : dynamics.end_time_location,
@@ -49,7 +50,7 @@ double step_limit(const Scenario& scenario, const physics::Model& model, double 
         return scenario.output.interval > 0.0 ? scenario.output.interval : dynamics.end_time;
     }
     const bool is_explicit = dynamics.integrator == TimeIntegrator::semi_implicit_euler;
-    const double at_rest = model.rest_stable_step();
+    const double at_rest = model.structure().rest_stable_step();
     const double limit = dynamics.time_step ? *dynamics.time_step : dynamics.safety * stable;
     if (is_explicit && dynamics.time_step && !(limit <= at_rest))
         refuse_unstable(dynamics, at_rest, num_steps);

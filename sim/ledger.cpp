@@ -65,15 +65,15 @@ Ledger::Counts Ledger::count() const {
 }
 
 BodyTotals Ledger::body_totals() const {
-    const auto reactions = model_.reactions();
+    const auto reactions = model_.boundary().reactions();
     return {counts_.nodes,
             counts_.elements,
             components_.value(),
-            model_.totals(),
-            model_.rest_stable_step(),
-            model_.external_work(),
-            model_.dissipated_energy(),
-            model_.min_volume_ratio(),
+            model_.energetics().totals(),
+            model_.structure().rest_stable_step(),
+            model_.energetics().external_work(),
+            model_.energetics().dissipated_energy(),
+            model_.energetics().min_volume_ratio(),
             {reactions.begin(), reactions.end()}};
 }
 
@@ -128,21 +128,22 @@ void Ledger::restore(ArchiveReader& ar) {
 }
 
 double Ledger::mass_error() const {
-    return std::abs(model_.totals().mass + mass_removed_ - initial_.totals.mass) /
+    return std::abs(model_.energetics().totals().mass + mass_removed_ - initial_.totals.mass) /
            initial_.totals.mass;
 }
 
 double Ledger::energy_error() const {
-    const physics::Totals now = model_.totals();
+    const physics::Totals now = model_.energetics().totals();
     const double at_start = initial_.totals.kinetic_energy + initial_.totals.elastic_energy;
     const double at_end = now.kinetic_energy + now.elastic_energy;
     // Near rest all energies are small and the error is only rounding. The floor is the energy of a
     // strain of 1e-4.
-    const double floor = 1e-8 * model_.stiffness_energy();
-    const double scale = std::abs(at_start) + std::abs(at_end) + std::abs(model_.external_work()) +
-                         std::abs(model_.dissipated_energy()) + std::abs(energy_removed_);
-    const double missing =
-        at_start + model_.external_work() - model_.dissipated_energy() - energy_removed_ - at_end;
+    const double floor = 1e-8 * model_.structure().stiffness_energy();
+    const double scale =
+        std::abs(at_start) + std::abs(at_end) + std::abs(model_.energetics().external_work()) +
+        std::abs(model_.energetics().dissipated_energy()) + std::abs(energy_removed_);
+    const double missing = at_start + model_.energetics().external_work() -
+                           model_.energetics().dissipated_energy() - energy_removed_ - at_end;
     return scale + floor == 0.0 ? 0.0 : std::abs(missing) / std::max(scale, floor);
 }
 
@@ -153,7 +154,7 @@ double removed_mass(const physics::Model& model, const topology::ChangeSet& chan
         x.clear();
         for (const VertexId n : record.corners)
             x.push_back(model.mesh().rest_positions()[n.index()]);
-        mass += model.density(record.region) * topology::signed_volume(record.kind, x);
+        mass += model.structure().density(record.region) * topology::signed_volume(record.kind, x);
     }
     return mass;
 }

@@ -97,8 +97,8 @@ class Ledger {
     /// Returns the relative error of the energy balance: |energy at the start + external work -
     /// dissipated energy - energy removed by edits - energy now|, divided by a scale.
     /// The scale is the sum of the absolute values of these five terms, but at least 1e-8 of
-    /// Model::stiffness_energy(). The error is of the order of the time step, since the energy of
-    /// the integrator oscillates with an amplitude of this order.
+    /// Structure::stiffness_energy(). The error is of the order of the time step, since the energy
+    /// of the integrator oscillates with an amplitude of this order.
     double energy_error() const;
 
     void save(ArchiveWriter& ar) const { list(ar, *this); }

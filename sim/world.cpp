@@ -39,7 +39,7 @@ const StepReport& World::Parts::checked_step(double end, double dt, const StepIn
     if (!(end > time && std::isfinite(end)))
         throw InputError("a step from " + format_number(time) + " s to " + format_number(end) +
                          " s: it must go forward");
-    const double at_rest = model.rest_stable_step();
+    const double at_rest = model.structure().rest_stable_step();
     if (solver == Solver::semi_implicit_euler && !(dt <= (1.0 + rounding_of_steps) * at_rest))
         throw InputError("a step of " + format_number(dt) + " s is above the stable step of " +
                          format_number(at_rest) + " s");
@@ -68,7 +68,9 @@ void World::Parts::require_possible(const StepInputs& inputs) const {
     require_once(inputs.grasps(), &GraspInput::grasp);
     for (const GraspInput& input : inputs.grasps()) {
         const std::size_t index = constraints.position_of(input.grasp);
-        const auto name = [&] { return "constraint '" + model.constraint_name(index) + "'"; };
+        const auto name = [&] {
+            return "constraint '" + model.boundary().constraints().name(index) + "'";
+        };
         if (!grasps[index]) throw InputError(name() + " is no grasp");
         if (!input.pose.is_sound()) throw InputError(name() + ": its pose is none");
     }
@@ -107,7 +109,7 @@ bool World::has_failed() const { return parts_->has_failed; }
 double World::time() const { return parts_->time; }
 std::uint64_t World::num_steps() const { return parts_->num_steps; }
 double World::stable_step() const { return parts_->stable_step; }
-double World::rest_stable_step() const { return parts_->model.rest_stable_step(); }
+double World::rest_stable_step() const { return parts_->model.structure().rest_stable_step(); }
 
 topology::BoundarySurface& World::Parts::built_surface() {
     if (!surface) surface.emplace(mesh);
@@ -162,7 +164,7 @@ void World::set_num_threads(int n) {
 const Mesh& World::mesh() const { return parts_->mesh; }
 std::span<const Vec3> World::positions() const { return parts_->model.mesh_positions(); }
 std::span<const Vec3> World::velocities() const { return parts_->model.mesh_velocities(); }
-std::vector<double> World::masses() const { return parts_->model.mesh_masses(); }
+std::vector<double> World::masses() const { return parts_->model.structure().mesh_masses(); }
 physics::BodyArrays World::body_arrays() const { return physics::body_arrays(parts_->model); }
 std::vector<physics::ElementResult> World::cell_results() const {
     std::vector<ElementId> elements;

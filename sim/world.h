@@ -251,8 +251,8 @@ class World {
     /// the last step.
     const physics::Reaction& reaction(ConstraintId constraint) const;
 
-    /// Returns the constraints, in the order of model().constraints(): those of the definition,
-    /// then those that were added.
+    /// Returns the constraints, in the order of model().boundary().constraints(): those of the
+    /// definition, then those that were added.
     /// @lifetime Until the list changes or the world is restored.
     std::span<const ConstraintId> constraints() const;
 
@@ -265,7 +265,7 @@ class World {
     /// Scales a load by a constant factor, which replaces its previous factor from now on.
     void set_load_factor(LoadId load, double factor);
     void remove_load(LoadId load);
-    /// Returns the loads, in the order of model().loads(); see constraints().
+    /// Returns the loads, in the order of model().boundary().loads(); see constraints().
     std::span<const LoadId> loads() const;
 
     /// Adds a force of your own, such as springs to points in space or a field. It acts in all
@@ -335,7 +335,7 @@ class World {
 
     /// The format of save(). It differs between two builds of Incise if save() or a checkpoint of a
     /// run lists other members, or if a world computes other bits.
-    static constexpr std::uint32_t state_format = 18;
+    static constexpr std::uint32_t state_format = 19;
 
     /// Returns the state of the world as bytes: mesh, positions, velocities, gravity, damping,
     /// constraints, loads, contact, tools and cuts in progress. The materials and the solver are

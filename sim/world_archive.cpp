@@ -29,14 +29,14 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
     : number(next_number()),
       mesh(topology::load_mesh(ar)),
       time(read_time(ar)),
-      model(mesh, former.model.elements().materials(), ar, time),
+      model(mesh, former.model.structure().elements().materials(), ar, time),
       contact(former.contact ? make_contact(former.contact->settings(), former.solver) : nullptr),
       integrator(make_integrator(former.solver, contact.get())),
       solver(former.solver),
       ledger(model),
       cutter(mesh, model.mesh_positions()) {
     restore_rest(ar);
-    model.set_num_threads(former.model.num_threads());
+    model.set_num_threads(former.model.workers().num_threads());
 }
 
 void World::Parts::restore_rest(ArchiveReader& ar) {
@@ -45,8 +45,8 @@ void World::Parts::restore_rest(ArchiveReader& ar) {
     ar(cutter, tool_ids, constraints, grasps, loads, num_steps, stable_step, bound_interval,
        has_moved, has_failed);
     if (!cutter.is_on(mesh)) throw InputError("what its tools remember is of another body");
-    constraints.complete(model.num_constraints());
-    loads.complete(model.loads().all().size());
+    constraints.complete(model.boundary().constraints().size());
+    loads.complete(model.boundary().loads().all().size());
     if (ar.read<bool>() != (contact != nullptr))
         throw InputError(
             "the world that was saved has contact, and this one has not, or the other "
@@ -64,10 +64,10 @@ void World::Parts::restore_rest(ArchiveReader& ar) {
 }
 
 void World::Parts::require_sound_grasps() const {
-    bool fits = grasps.size() == model.num_constraints();
+    bool fits = grasps.size() == model.boundary().constraints().size();
     for (std::size_t i = 0; i < grasps.size() && fits; ++i)
-        fits = !grasps[i] ||
-               (grasps[i]->pose.is_sound() && !model.constraints().all()[i].grip.is_empty());
+        fits = !grasps[i] || (grasps[i]->pose.is_sound() &&
+                              !model.boundary().constraints().all()[i].grip.is_empty());
     if (!fits) throw InputError("its grasps are those of another world");
 }
 
@@ -129,7 +129,7 @@ void World::Parts::go_back(std::span<const physics::BodyEdit* const> edits,
     report = {};
     restore_rest(ar);
     // There may be other force terms now.
-    stable_step = std::min(stable_step, model.rest_stable_step());
+    stable_step = std::min(stable_step, model.structure().rest_stable_step());
 }
 
 namespace {
@@ -151,7 +151,7 @@ void add_values(ArchiveWriter& ar, const physics::HybridSprings& springs) {
 /// Returns a checksum of the plain values of the materials. Two laws of one kind with the same
 /// moduli at rest have the same checksum.
 std::uint64_t fingerprint_of(const physics::Model& model) {
-    const physics::MaterialTable& table = model.elements().materials();
+    const physics::MaterialTable& table = model.structure().elements().materials();
     ArchiveWriter ar;
     for (const physics::Material& material : table.materials) {
         ar(material.density, static_cast<std::uint64_t>(material.method.index()));
@@ -187,7 +187,8 @@ void World::restore(std::string_view bytes) {
     auto restored = std::make_unique<Parts>(*parts_, ar);
     restored->model.take_force_terms(parts_->model, restored->time);
     // The saved world may have had other force terms.
-    restored->stable_step = std::min(restored->stable_step, restored->model.rest_stable_step());
+    restored->stable_step =
+        std::min(restored->stable_step, restored->model.structure().rest_stable_step());
     parts_ = std::move(restored);
 }
 

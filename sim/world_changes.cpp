@@ -67,7 +67,7 @@ physics::MaterialTable with_material(physics::MaterialTable table,
 ConstraintId World::add_constraint(physics::Constraint constraint) {
     Parts& p = *parts_;
     require_sound(constraint, p.mesh);
-    p.model.add_constraint(std::move(constraint));
+    p.model.boundary().add_constraint(std::move(constraint));
     p.grasps.emplace_back();
     return p.constraints.add();
 }
@@ -94,35 +94,35 @@ std::optional<Pose> World::grasp_pose(ConstraintId constraint) const {
 void World::set_constraint(ConstraintId id, physics::Constraint constraint) {
     Parts& p = *parts_;
     const std::size_t index = p.constraints.position_of(id);
-    const std::string name = "constraint '" + p.model.constraint_name(index) + "'";
+    const std::string name = "constraint '" + p.model.boundary().constraints().name(index) + "'";
     if (p.grasps[index])
         throw InputError(name + " is a grasp: it goes with its pose; release it, and grasp anew");
     if (!constraint.grip.is_empty()) throw InputError(name + ": a grasp is made by grasp()");
     require_sound(constraint, p.mesh);
-    p.model.set_constraint(index, std::move(constraint));
+    p.model.boundary().set_constraint(index, std::move(constraint));
 }
 
 void World::release(ConstraintId constraint) {
     Parts& p = *parts_;
     const std::size_t index = p.constraints.position_of(constraint);
-    p.model.remove_constraint(index);
+    p.model.boundary().remove_constraint(index);
     p.constraints.remove(constraint);
     p.grasps.erase(p.grasps.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 const physics::Reaction& World::reaction(ConstraintId constraint) const {
-    return parts_->model.reactions()[parts_->constraints.position_of(constraint)];
+    return parts_->model.boundary().reactions()[parts_->constraints.position_of(constraint)];
 }
 
 void World::add_force_term(std::unique_ptr<physics::ForceTerm> term) {
     if (!term) throw InputError("a force term is given as null");
-    parts_->model.add_force_term(std::move(term));
+    parts_->model.boundary().add_force_term(std::move(term));
     parts_->loads_have_changed = true;
     parts_->renew_stable_step();
 }
 
 void World::remove_force_term(const physics::ForceTerm* term) {
-    if (!parts_->model.remove_force_term(term))
+    if (!parts_->model.boundary().remove_force_term(term))
         throw InputError("the world does not have this force term");
     parts_->loads_have_changed = true;
     parts_->renew_stable_step();
@@ -131,7 +131,7 @@ void World::remove_force_term(const physics::ForceTerm* term) {
 LoadId World::add_load(physics::Load load) {
     Parts& p = *parts_;
     require_sound(load, p.mesh);
-    p.model.add_load(std::move(load));
+    p.model.boundary().add_load(std::move(load));
     p.loads_have_changed = true;
     return p.loads.add();
 }
@@ -142,7 +142,7 @@ void World::set_load(LoadId id, physics::Load load) {
     Parts& p = *parts_;
     const std::size_t index = p.loads.position_of(id);
     require_sound(load, p.mesh);
-    p.model.set_load(index, std::move(load));
+    p.model.boundary().set_load(index, std::move(load));
     p.loads_have_changed = true;
 }
 
@@ -150,28 +150,28 @@ void World::set_load_factor(LoadId load, double factor) {
     Parts& p = *parts_;
     const std::size_t index = p.loads.position_of(load);
     if (!std::isfinite(factor))
-        throw InputError("load '" + p.model.loads().all()[index].name +
+        throw InputError("load '" + p.model.boundary().loads().all()[index].name +
                          "': its factor is not finite");
-    p.model.set_load_factor(index, physics::TimeCurve<double>({{p.time, factor}}));
+    p.model.boundary().set_load_factor(index, physics::TimeCurve<double>({{p.time, factor}}));
     p.loads_have_changed = true;
 }
 
 void World::remove_load(LoadId load) {
     Parts& p = *parts_;
-    p.model.remove_load(p.loads.position_of(load));
+    p.model.boundary().remove_load(p.loads.position_of(load));
     p.loads.remove(load);
     p.loads_have_changed = true;
 }
 
 void World::set_gravity(const Vec3& gravity) {
     require_sound_gravity(gravity);
-    parts_->model.set_gravity(gravity);
+    parts_->model.boundary().set_gravity(gravity);
     parts_->loads_have_changed = true;
 }
 
 void World::set_damping(double damping) {
     require_sound_damping(damping);
-    parts_->model.set_damping(damping);
+    parts_->model.boundary().set_damping(damping);
 }
 
 void World::set_material(const physics::Material& material, std::span<const int> regions,
@@ -193,8 +193,8 @@ void World::set_material(const physics::Material& material, std::span<const int>
 }
 
 physics::MaterialTable World::Parts::materials_with_fibres() const {
-    physics::MaterialTable table = model.elements().materials();
-    table.fibres.assign(model.fibres().begin(), model.fibres().end());
+    physics::MaterialTable table = model.structure().elements().materials();
+    table.fibres.assign(model.structure().fibres().begin(), model.structure().fibres().end());
     return table;
 }
 

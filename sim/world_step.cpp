@@ -68,9 +68,9 @@ World::Parts::Parts(WorldDef def)
       solver(def.solver),
       ledger(model),
       cutter(mesh, model.mesh_positions()),
-      constraints("constraint", number, model.num_constraints()),
-      grasps(model.num_constraints()),
-      loads("load", number, model.loads().all().size()),
+      constraints("constraint", number, model.boundary().constraints().size()),
+      grasps(model.boundary().constraints().size()),
+      loads("load", number, model.boundary().loads().all().size()),
       stable_step(model.stable_step()),
       bound_interval{topology::mean_element_length(mesh)} {
     model.set_num_threads(def.num_threads);
@@ -93,7 +93,7 @@ void World::Parts::step_to(double end) {
     for (std::size_t i = 0; i < grasps.size(); ++i) {
         if (!grasps[i]) continue;
         auto& [pose, target] = *grasps[i];
-        model.set_grip(i, physics::TimeCurve<Pose>({{time, pose}, {end, target}}));
+        model.boundary().set_grip(i, physics::TimeCurve<Pose>({{time, pose}, {end, target}}));
         pose = target;
     }
     for (const auto& tool : tools) tool->begin_step(end - time);
@@ -175,7 +175,8 @@ void World::Parts::update_stable_step() {
         interval.moved = 0.0;
     } else {
         for (const Edit& edit : report.edits)
-            bound = std::min(bound, model.stable_step(edit.body.touched_nodes));
+            bound = std::min(bound,
+                             model.structure().stable_step(model.state(), edit.body.touched_nodes));
     }
     bound = interval.may_rise(stable_step) ? interval.least : std::min(bound, stable_step);
     if (bound == stable_step) return;
@@ -196,7 +197,7 @@ void World::Parts::move_to(double end) {
     const double from = time, dt = end - time;
     const std::size_t n = report.num_substeps;
     double moved = 0.0;  // how far a node has moved, at most
-    reactions.assign(model.num_constraints(), {});
+    reactions.assign(model.boundary().constraints().size(), {});
     for (std::size_t i = 0; i < n; ++i) {
         const double next =
             i + 1 == n ? end : from + dt * static_cast<double>(i + 1) / static_cast<double>(n);
@@ -207,12 +208,12 @@ void World::Parts::move_to(double end) {
         integrator->step(model, time, next - time);
         if (contact) contact->book_work(model);
         for (std::size_t k = 0; k < reactions.size() && n > 1; ++k)
-            reactions[k] += (next - time) / dt * model.reactions()[k];
+            reactions[k] += (next - time) / dt * model.boundary().reactions()[k];
         moved += model.largest_mesh_move();
-        bound_interval.moved += model.largest_move();
+        bound_interval.moved += model.state().largest_move();
         time = next;
     }
-    if (n > 1) model.set_reactions(reactions);
+    if (n > 1) model.boundary().set_reactions(reactions);
 }
 
 /// Cuts what a tool meets on the path from its pose to its target, and moves the tool there.

@@ -122,9 +122,9 @@ class Constraints {
     void prescribe(const std::array<int, 3>& constraint_of,
                    const fragments::FragmentMesh& fragments, NodeId n, double time, Vec3& x) const;
 
-    /// Appends a constraint; see Model::add_constraint.
+    /// Appends a constraint; see Boundary::add_constraint.
     void add(const BodyView& body, Constraint constraint);
-    /// Removes a constraint; see Model::remove_constraint.
+    /// Removes a constraint; see Boundary::remove_constraint.
     void remove(const BodyView& body, std::size_t i);
     void set_grip(std::size_t i, TimeCurve<Pose> grip) { constraints_[i].grip = std::move(grip); }
 

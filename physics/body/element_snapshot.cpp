@@ -6,9 +6,9 @@
 namespace incise::physics {
 
 ElementSnapshot::ElementSnapshot(const Model& model)
-    : blocks_(model.elements().share_blocks()),
+    : blocks_(model.structure().elements().share_blocks()),
       positions_(model.positions().begin(), model.positions().end()),
-      history_(model.history()) {}
+      history_(model.state().history()) {}
 
 std::vector<ElementResult> ElementSnapshot::results(std::span<const ElementId> elements) const {
     std::vector<ElementResult> by_id, of_block;

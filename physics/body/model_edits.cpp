@@ -46,8 +46,7 @@ std::vector<Node> touched_nodes(const Mesh& mesh, const MeshChanges<Node, Elemen
     }
     for (const auto& record : changes.nodes_removed) {
         touched.push_back(record.id);
-        // State::apply has added the mass of a merged node to that of its survivor. The mass of the
-        // survivor must be summed again, even if its elements have been separated from it since.
+        // A merge moves the survivor, even if its elements have been separated from it since.
         if (record.num_sources == 1) touched.push_back(record.sources[0].node);
     }
     make_sorted_set(touched);
@@ -71,27 +70,15 @@ std::vector<NodeId> touched_nodes(const FragmentMesh& fragments, const FragmentC
 
 }  // namespace
 
-void Model::edit_elements(const FragmentChanges& changes) {
-    elements_.apply(fragments_, changes.mesh);
-    for (const auto& record : changes.mesh.elements_removed)
-        elements_.erase(record.id, record.region);
-    for (const auto& record : changes.mesh.elements_added) elements_.insert(fragments_, record.id);
-    std::vector<ElementId> changed;
-    for (const fragments::ElementRewiring& rewiring : changes.mesh.rewired)
-        changed.push_back(rewiring.element);
-    for (const fragments::ShareChange& change : changes.shares) changed.push_back(change.fragment);
-    make_sorted_set(changed);
-    for (const ElementId e : changed) elements_.replace(fragments_, e);
-}
-
 BodyEdit Model::apply(const topology::Mesh& mesh, const ChangeSet& changes) {
     if (changes.is_empty()) return {changes, {}, {}, {}, {}};
     if (changes.epoch_after < changes.epoch_before)
         throw InputError("model: this edit takes back another one: apply the BodyEdit that does");
-    topology::FollowedEpoch(fragments_.epoch()).advance(mesh, changes, "model");
+    topology::FollowedEpoch(fragments().epoch()).advance(mesh, changes, "model");
     const Momenta removed = momenta_of_removed(changes);
-    BodyEdit edit{changes, fragments_.apply(mesh, changes), {}, touched_nodes(mesh, changes), {}};
-    edit.touched_nodes = touched_nodes(fragments_, edit.physics);
+    BodyEdit edit{
+        changes, structure_.fragments_.apply(mesh, changes), {}, touched_nodes(mesh, changes), {}};
+    edit.touched_nodes = touched_nodes(fragments(), edit.physics);
     const bool keeps_momenta = edit.physics.has_joins();
     const Momenta before = keeps_momenta ? momenta_of(edit.touched_nodes) - removed : Momenta();
     follow(edit);
@@ -107,7 +94,7 @@ void Model::apply(const topology::Mesh& mesh, const BodyEdit& edit) {
         apply(mesh, edit.material);
         return;
     }
-    fragments_.go_back(mesh, edit.physics);
+    structure_.fragments_.go_back(mesh, edit.physics);
     const auto velocities = state_.velocities();
     const bool has_moved = std::ranges::any_of(edit.velocities, [&](const auto& change) {
         return velocities[change.node.index()] != change.before;
@@ -119,26 +106,21 @@ void Model::apply(const topology::Mesh& mesh, const BodyEdit& edit) {
 }
 
 void Model::follow(const BodyEdit& edit) {
-    ++structure_version_;
-    const FragmentMeshChanges& of_fragments = edit.physics.mesh;
-    resize(std::max(of_fragments.node_capacity_before, of_fragments.node_capacity_after));
-    state_.apply(fragments_, of_fragments, masses_);
-    edit_elements(edit.physics);
-    resize(of_fragments.node_capacity_after);
-    elements_.number_nodes(masses_.size());
-    for (const NodeId n : edit.touched_nodes) gather(n);
-    embedding_.apply(mesh_, fragments_, edit.touched_vertices, edit.physics);
-    constraints_.apply(view(), edit);
-    loads_.apply(view(), edit);
-    for (const auto& term : added_terms_) term->apply(view(), edit);
+    state_.apply(fragments(), edit.physics.mesh, masses());
+    structure_.follow(edit.physics);
+    for (const NodeId n : edit.touched_nodes) structure_.gather(n, boundary_.stiffness_bound(n));
+    structure_.embedding_.apply(mesh(), fragments(), edit.touched_vertices, edit.physics);
+    boundary_.apply(structure_.view(state_), edit);
+    energetics_.forget(edit.touched_nodes);
+    elastic_forces_.resize(masses().size(), Vec3::Zero());
 }
 
 /// Returns the momenta of nodes, about the origin.
 Momenta Model::momenta_of(std::span<const NodeId> nodes) const {
     Momenta sum;
     for (const NodeId n : nodes)
-        if (n.index() < masses_.size() && masses_[n.index()] > 0.0)
-            sum.add(masses_[n.index()], positions()[n.index()], velocities()[n.index()]);
+        if (n.index() < masses().size() && masses()[n.index()] > 0.0)
+            sum.add(masses()[n.index()], positions()[n.index()], velocities()[n.index()]);
     return sum;
 }
 
@@ -149,7 +131,7 @@ Momenta Model::momenta_of_removed(const ChangeSet& changes) const {
     std::vector<Vec3> x;
     const auto volume_of = [&](const topology::CellRecord& record) {
         x.clear();
-        for (const VertexId n : record.corners) x.push_back(mesh_.rest_position(n));
+        for (const VertexId n : record.corners) x.push_back(mesh().rest_position(n));
         return topology::signed_volume(record.kind, x);
     };
     for (const auto& record : changes.elements_removed) volumes[record.id] = volume_of(record);
@@ -167,10 +149,10 @@ Momenta Model::momenta_of_removed(const ChangeSet& changes) const {
     }
     Momenta sum;
     for (const auto& [cell, volume] : volumes) {
-        const ElementId e = fragments_.fragment_of_cell(cell);
-        const auto corners = fragments_.corners(e);
-        const double mass =
-            density(fragments_.region(e)) * volume / static_cast<double>(corners.size());
+        const ElementId e = fragments().fragment_of_cell(cell);
+        const auto corners = fragments().corners(e);
+        const double mass = structure_.density(fragments().region(e)) * volume /
+                            static_cast<double>(corners.size());
         for (const NodeId n : corners)
             sum.add(mass, positions()[n.index()], velocities()[n.index()]);
     }
@@ -184,16 +166,16 @@ std::vector<BodyEdit::Velocity> Model::change_momenta(std::span<const NodeId> no
     if (by.linear.isZero(0.0) && by.angular.isZero(0.0)) return changes;
     std::vector<MassPoint> points;
     for (const NodeId n : nodes) {
-        if (masses_[n.index()] == 0.0 || constraints_.of_node(n.index())) continue;
-        points.push_back({masses_[n.index()], positions()[n.index()]});
+        if (masses()[n.index()] == 0.0 || boundary_.constraints().of_node(n.index())) continue;
+        points.push_back({masses()[n.index()], positions()[n.index()]});
         changes.push_back({n, velocities()[n.index()], Vec3::Zero()});
     }
     const RigidVelocity change = rigid_change(points, by);
     for (std::size_t i = 0; i < changes.size(); ++i) {
         changes[i].after = changes[i].before + change.at(points[i].x);
         state_.set_velocity(changes[i].node, changes[i].after);
-        node_sums_.forget(changes[i].node.index());
     }
+    energetics_.forget(nodes);
     return changes;
 }
 

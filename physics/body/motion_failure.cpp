@@ -22,9 +22,10 @@ std::pair<ElementId, double> most_crushed_before(const Model& model, NodeId n, d
     fragments.star(n, star);
     std::pair<ElementId, double> lowest{star.front(), std::numeric_limits<double>::infinity()};
     for (const ElementId e : star)
-        if (const double J = model.elements()
+        if (const double J = model.structure()
+                                 .elements()
                                  .block_of(fragments, e)
-                                 .result(e, before, model.history())
+                                 .result(e, before, model.state().history())
                                  .volume_ratio;
             J < lowest.second)
             lowest = {e, J};
@@ -49,14 +50,14 @@ Lost lost_node(const Model& model) {
 
 /// Returns the likely cause and appends it to the text.
 FailureCause find_cause(const Model& model, NodeId n, double dt, std::ostream& text) {
-    const double stable_step = model.rest_stable_step();
-    const Vec3 &outer = model.outer_forces()[n.index()],
+    const double stable_step = model.structure().rest_stable_step();
+    const Vec3 &outer = model.boundary().outer_forces()[n.index()],
                &elastic = model.elastic_forces()[n.index()];
     if (dt > stable_step) {
         text << "the step of " << dt << " s is above the stable step of " << stable_step << " s";
         return FailureCause::step_above_bound;
     }
-    if (model.constraints().of_node(n.index())) {
+    if (model.boundary().constraints().of_node(n.index())) {
         text << "its constraint moves too fast";
         return FailureCause::constraint_too_fast;
     }

@@ -17,19 +17,32 @@ State::State(const fragments::FragmentMesh& fragments, std::size_t history_size)
       history_(history_size, fragments.element_capacity()) {}
 
 // A merge keeps momentum and centre of mass. If both states are equal, they stay so bit for bit.
-void State::merge(NodeId absorbed, NodeId survivor, std::span<double> masses) {
+void State::merge(NodeId absorbed, NodeId survivor, double weight) {
     const std::size_t from = absorbed.index(), into = survivor.index();
-    if (masses[from] == 0.0) return;  // the node was added by the same edit and has no state
     Merge merge{survivor, positions_[into], velocities_[into], {}, {}};
-    const double mass = masses[from] + masses[into];
-    const double weight = masses[from] / mass;
     positions_[into] += weight * (positions_[from] - positions_[into]);
     velocities_[into] += weight * (velocities_[from] - velocities_[into]);
-    masses[into] = mass;
     ++version_;
     merge.position_after = positions_[into];
     merge.velocity_after = velocities_[into];
     merges_[absorbed] = merge;
+}
+
+void State::merge_all(std::span<const NodeRecord> removed, std::span<const double> masses) {
+    std::map<NodeId, double> grown;  // the masses of nodes that others were merged into, kg
+    const auto mass_of = [&](NodeId n) {
+        if (const auto found = grown.find(n); found != grown.end()) return found->second;
+        return n.index() < masses.size() ? masses[n.index()] : 0.0;
+    };
+    for (const NodeRecord& record : removed) {
+        if (record.num_sources != 1) continue;
+        const NodeId survivor = record.sources[0].node;
+        const double mass = mass_of(record.id);
+        if (mass == 0.0) continue;  // the node was added by the same edit and has no state
+        const double sum = mass + mass_of(survivor);
+        merge(record.id, survivor, mass / sum);
+        grown[survivor] = sum;
+    }
 }
 
 // The absorbed node still has its state in the arrays. The state of the survivor is restored,
@@ -61,13 +74,12 @@ void State::take_from_sources(const NodeRecord& record) {
 }
 
 void State::apply(const fragments::FragmentMesh& fragments, const FragmentMeshChanges& changes,
-                  std::span<double> masses) {
+                  std::span<const double> masses) {
     const std::size_t most_nodes =
         std::max(changes.node_capacity_before, changes.node_capacity_after);
     positions_.resize(most_nodes, Vec3::Zero());
     velocities_.resize(most_nodes, Vec3::Zero());
-    for (const NodeRecord& record : changes.nodes_removed)
-        if (record.num_sources == 1) merge(record.id, record.sources[0].node, masses);
+    merge_all(changes.nodes_removed, masses);
     const auto& added = changes.nodes_added;
     const auto first_born =
         std::lower_bound(added.begin(), added.end(), NodeId(changes.node_capacity_before),
@@ -86,14 +98,15 @@ void State::apply(const fragments::FragmentMesh& fragments, const FragmentMeshCh
 
 void State::save(ArchiveWriter& ar) const {
     ar(positions_, velocities_, std::vector(history_.values().begin(), history_.values().end()),
-       merges_);
+       merges_, largest_move_);
 }
 
 void State::restore(ArchiveReader& ar) {
     std::vector<Vec3> positions, velocities;
     std::vector<double> history;
     std::map<NodeId, Merge> merges;
-    ar(positions, velocities, history, merges);
+    double largest_move = 0.0;
+    ar(positions, velocities, history, merges, largest_move);
     const auto is_there = [&](NodeId n) { return n.is_valid() && n.index() < positions_.size(); };
     if (positions.size() != positions_.size() || velocities.size() != velocities_.size() ||
         history.size() != history_.values().size() ||
@@ -109,6 +122,7 @@ void State::restore(ArchiveReader& ar) {
     velocities_ = std::move(velocities);
     history_.set_values(history);
     merges_ = std::move(merges);
+    largest_move_ = largest_move;
     ++version_;
 }
 

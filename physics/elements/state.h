@@ -28,6 +28,10 @@ class State {
     std::span<const Vec3> positions() const { return positions_; }    ///< m, current, by node id
     std::span<const Vec3> velocities() const { return velocities_; }  ///< m/s, by node id
     const ViscousHistory& history() const { return history_; }
+    /// Returns the largest distance that a node moved in the last step, m. If the step had several
+    /// parts, it is the sum over the parts.
+    double largest_move() const { return largest_move_; }
+    void set_largest_move(double distance) { largest_move_ = distance; }
     /// Returns the version. An edit changes it only if the edit moves a node that existed before:
     /// by a merge, or by the undo of one. Other results must follow the edit themselves.
     std::uint64_t version() const { return version_; }
@@ -46,11 +50,9 @@ class State {
     /// Follows an edit; for the values of new and merged nodes see Model::apply.
     /// @param fragments  after the edit
     /// @param changes    the record of the edit
-    /// @param masses     lumped, kg, by node id, before the edit; the mass of a merged node is
-    /// added
-    ///                   to that of its survivor
+    /// @param masses     lumped, kg, by node id, before the edit
     void apply(const fragments::FragmentMesh& fragments,
-               const fragments::FragmentMeshChanges& changes, std::span<double> masses);
+               const fragments::FragmentMeshChanges& changes, std::span<const double> masses);
 
     /// Sets the velocity of a node, m/s, as a part of an edit. The version stays: results that
     /// depend on velocities must follow the edit themselves.
@@ -72,13 +74,15 @@ class State {
                self.velocity_after);
         }
     };
-    void merge(NodeId absorbed, NodeId survivor, std::span<double> masses);
+    void merge(NodeId absorbed, NodeId survivor, double weight);
+    void merge_all(std::span<const fragments::NodeRecord> removed, std::span<const double> masses);
     bool take_back_merge(NodeId absorbed);
     void take_from_sources(const fragments::NodeRecord& record);
 
     std::vector<Vec3> positions_, velocities_;
     ViscousHistory history_;
     std::map<NodeId, Merge> merges_;  // by the absorbed node
+    double largest_move_ = 0.0;
     std::uint64_t version_ = 1;
 };
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cstring>
 
-#include "incise/physics/body/node_lanes.h"
 #include "incise/physics/simd/lanes.h"
+#include "incise/physics/solve/node_lanes.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
 

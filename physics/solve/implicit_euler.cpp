@@ -3,18 +3,19 @@
 
 #include "incise/physics/body/motion_failure.h"
 #include "incise/physics/solve/integrator.h"
+#include "incise/physics/solve/solved_step.h"
 
 namespace incise::physics {
 
 void ImplicitEuler::step(Model& model, double time, double dt) {
-    model.begin_step();
+    begin_solved_step(model);
     newton_.follow(model);
     substep(model, time, dt, 0);
 }
 
 void ImplicitEuler::substep(Model& model, double time, double dt, int halvings) {
     const auto before = model.positions(), v = model.velocities();
-    const double damping = model.damping(), slowed = 1.0 + damping * dt;
+    const double damping = model.boundary().damping(), slowed = 1.0 + damping * dt;
     x_.assign(before.begin(), before.end());
     predicted_positions_.resize(x_.size());
     for (std::size_t n = 0; n < x_.size(); ++n)
@@ -41,7 +42,7 @@ void ImplicitEuler::substep(Model& model, double time, double dt, int halvings) 
     }
 
     outer_.resize(x_.size());
-    model.outer_forces_at(x_, time + dt, outer_);
+    model.boundary().outer_forces_at(x_, time + dt, model.workers(), outer_);
     velocities_.assign(v.begin(), v.end());
     reactions_.assign(x_.size(), Vec3::Zero());
     double work = 0.0, dissipated = 0.0;
@@ -60,16 +61,17 @@ void ImplicitEuler::substep(Model& model, double time, double dt, int halvings) 
                 continue;
             }
             // The inertial part of the reaction works at the mean velocity, as in
-            // Model::integrate.
+            // explicit steps.
             reactions_[n][c] = mass * (change[c] / dt + damping * v_new[c]) - force[c];
             work += reactions_[n][c] * displacement[c] - swing;
         }
         velocities_[n] = v_new;
     }
-    const double energy = model.elastic_energy();
-    model.take_step(x_, velocities_, reactions_, dt);
+    const double energy = model.energetics().elastic_energy();
+    take_solved_step(model, x_, velocities_, reactions_, dt);
     // What the elements do not keep of the work on them is taken by viscosity and by the method.
-    model.record_work(work, dissipated - (model.elastic_energy() - energy));
+    model.energetics().record_work(work,
+                                   dissipated - (model.energetics().elastic_energy() - energy));
 }
 
 }  // namespace incise::physics

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "incise/physics/body/model.h"
+#include "incise/physics/solve/explicit_step.h"
 #include "incise/physics/solve/newton.h"
 
 namespace incise::physics {
@@ -36,13 +37,13 @@ class VelocityProjection {
     virtual ~VelocityProjection() = default;
     /// Looks at the body before a step. Returns false if it will give no impulses in the step.
     virtual bool prepare(const Model& /*model*/, double /*time*/, double /*dt*/) { return true; }
-    /// Gives impulses to nodes of the model; see Model::give_impulses. The step is from `time` to
-    /// time + dt, s, and the velocities of the model are those of its end.
-    virtual void project(Model& model, double time, double dt) = 0;
+    /// Gives impulses to nodes of the model; see ExplicitStep::give_impulses. The step is from
+    /// `time` to time + dt, s, and the velocities of the model are those of its end.
+    virtual void project(Model& model, ExplicitStep& step, double time, double dt) = 0;
 };
 
 /// Symplectic Euler, for steps below the stable step. A step has the stages kick, project and
-/// drift. If no projection will give impulses, it is one pass over the nodes: Model::integrate.
+/// drift. If no projection will give impulses, it is one pass over the nodes: ExplicitStep::move.
 ///
 /// Velocities are those in the middle of the step before. So where a step differs in length from
 /// the one before, the forces act over the mean of both. Source: docs/theory.md, Masses and time
@@ -58,7 +59,8 @@ class SemiImplicitEuler final : public Integrator {
 
   private:
     std::vector<VelocityProjection*> projections_, acting_;  // all, and those of a step
-    double dt_ = 0.0;                                        // of the step before, s; 0: none
+    ExplicitStep step_;
+    double dt_ = 0.0;  // of the step before, s; 0: none
 };
 
 /// Implicit (backward) Euler: x' = x + dt v', m (v' - v)/dt = f(x', v'). The forces f are those of

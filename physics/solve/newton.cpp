@@ -29,7 +29,7 @@ void follow_constraints(const FreeComponent& piece, const Model& model,
                         std::vector<Vec3>& increments) {
     Vec3 sum = Vec3::Zero(), count = Vec3::Zero();
     for (const NodeId n : piece.nodes)
-        if (const auto* constraint_of = model.constraints().of_node(n.index()))
+        if (const auto* constraint_of = model.boundary().constraints().of_node(n.index()))
             for (int c = 0; c < 3; ++c)
                 if ((*constraint_of)[static_cast<std::size_t>(c)] >= 0) {
                     sum[c] += increments[n.index()][c];
@@ -47,10 +47,10 @@ struct NewtonSolver::Forces {
 };
 
 void NewtonSolver::follow(const Model& model) {
-    if (structure_version_ == model.structure_version()) return;
+    if (structure_version_ == model.version()) return;
     if (pins_free_components_)
-        free_components_ =
-            find_free_components(model.fragments(), model.positions(), model.constraints());
+        free_components_ = find_free_components(model.fragments(), model.positions(),
+                                                model.boundary().constraints());
     prepare(model);
 }
 
@@ -58,7 +58,7 @@ void NewtonSolver::prepare(const Model& model) {
     const fragments::FragmentMesh& fragments = model.fragments();
     is_free_.assign(fragments.node_capacity(), {true, true, true});
     for (std::size_t n = 0; n < is_free_.size(); ++n)
-        if (const auto* constraint_of = model.constraints().of_node(n))
+        if (const auto* constraint_of = model.boundary().constraints().of_node(n))
             for (std::size_t c = 0; c < 3; ++c) is_free_[n][c] = (*constraint_of)[c] < 0;
     for (const FreeComponent& piece : free_components_)
         for (const auto& [node, component] : piece.pins)
@@ -66,7 +66,7 @@ void NewtonSolver::prepare(const Model& model) {
     tangent_.set_pattern(fragments, is_free_);
     for (auto* scratch : {&elastic_, &outer_, &middle_, &trial_, &increments_})
         scratch->assign(fragments.node_capacity(), Vec3::Zero());
-    structure_version_ = model.structure_version();
+    structure_version_ = model.version();
 }
 
 void NewtonSolver::save(ArchiveWriter& ar) const {
@@ -86,14 +86,14 @@ void NewtonSolver::restore(ArchiveReader& ar, const Model& model) {
                           });
         if (!fits) throw InputError("it pins nodes that are not there");
     }
-    if (structure_version == model.structure_version()) prepare(model);
+    if (structure_version == model.version()) prepare(model);
 }
 
 NewtonSolver::Forces NewtonSolver::evaluate(const Model& model, const StepProblem& problem,
                                             const std::vector<Vec3>& x) {
     std::fill(elastic_.begin(), elastic_.end(), Vec3::Zero());
-    model.elements().add_forces({x, model.history(), problem.dt}, elastic_);
-    model.outer_forces_at(x, problem.time, outer_);
+    model.structure().elements().add_forces({x, model.state().history(), problem.dt}, elastic_);
+    model.boundary().outer_forces_at(x, problem.time, model.workers(), outer_);
     net_.setZero(static_cast<Eigen::Index>(tangent_.num_unknowns()));
     double elastic = 0.0, outer = 0.0, inertial = 0.0, rounding = 0.0;
     for (std::size_t n = 0; n < x.size(); ++n) {
@@ -108,7 +108,7 @@ NewtonSolver::Forces NewtonSolver::evaluate(const Model& model, const StepProble
             net -= force;
         }
         if (!problem.holding.empty()) net += problem.holding[n];
-        const double stiffness = model.stiffness_bound(n) + problem.inertia * mass;
+        const double stiffness = model.structure().stiffness_bound(n) + problem.inertia * mass;
         rounding += stiffness * stiffness * x[n].squaredNorm();
         for (int c = 0; c < 3; ++c)
             if (const auto row = tangent_.row_of(n, c); row >= 0) net_[row] = net[c];
@@ -121,10 +121,10 @@ void NewtonSolver::assemble(const Model& model, const StepProblem& problem,
                             const std::vector<Vec3>& x, TangentKind kind,
                             std::span<const Vec3> increments) {
     tangent_.clear(increments);
-    model.elements().for_each_block([&](const ElementBlock& block) {
-        block.visit_tangents({x, model.history(), problem.dt}, kind, tangent_);
+    model.structure().elements().for_each_block([&](const ElementBlock& block) {
+        block.visit_tangents({x, model.state().history(), problem.dt}, kind, tangent_);
     });
-    if (kind == TangentKind::exact) model.visit_outer_tangents(x, problem.time, tangent_);
+    if (kind == TangentKind::exact) model.boundary().visit_tangents(x, problem.time, tangent_);
     if (problem.inertia > 0.0)
         for (std::size_t n = 0; n < x.size(); ++n)
             if (model.masses()[n] > 0.0)
@@ -148,8 +148,8 @@ void NewtonSolver::factorise(const Model& model, const StepProblem& problem,
 double NewtonSolver::potential(const Model& model, const StepProblem& problem,
                                const std::vector<Vec3>& x) const {
     Sum sum;
-    model.elements().for_each_block([&](const ElementBlock& block) {
-        sum += block.potential({x, model.history(), problem.dt});
+    model.structure().elements().for_each_block([&](const ElementBlock& block) {
+        sum += block.potential({x, model.state().history(), problem.dt});
     });
     if (problem.inertia > 0.0)
         for (std::size_t n = 0; n < x.size(); ++n)
@@ -165,7 +165,7 @@ double NewtonSolver::work_of_loads(const Model& model, const StepProblem& proble
                                    const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
     Sum work;
     const auto add = [&](const std::vector<Vec3>& at, double weight) {
-        model.outer_forces_at(at, problem.time, outer_);
+        model.boundary().outer_forces_at(at, problem.time, model.workers(), outer_);
         for (std::size_t n = 0; n < from.size(); ++n)
             if (model.masses()[n] > 0.0) work += weight * outer_[n].dot(to[n] - from[n]);
     };
@@ -183,11 +183,11 @@ bool NewtonSolver::find_increments(const Model& model, double time, const std::v
     increments_.assign(x.size(), Vec3::Zero());
     bool constraints_move = false;
     for (std::size_t n = 0; n < x.size(); ++n)
-        if (const auto* constraint_of = model.constraints().of_node(n);
+        if (const auto* constraint_of = model.boundary().constraints().of_node(n);
             constraint_of && model.masses()[n] > 0.0) {
             Vec3 target = x[n];
-            model.constraints().prescribe(*constraint_of, model.fragments(), NodeId(n), time,
-                                          target);
+            model.boundary().constraints().prescribe(*constraint_of, model.fragments(), NodeId(n),
+                                                     time, target);
             increments_[n] = target - x[n];
             constraints_move = constraints_move || !increments_[n].isZero(0.0);
         }
@@ -210,7 +210,7 @@ bool NewtonSolver::search_line(const Model& model, const StepProblem& problem,
     constexpr double enough = 1e-4, shortest = 1e-6;
     const double slope = -net_.dot(direction_);
     const double start = potential(model, problem, x);
-    const double stiffness_energy = model.stiffness_energy();
+    const double stiffness_energy = model.structure().stiffness_energy();
     for (double share = 1.0; share > shortest; share *= 0.5) {
         go_along(x, share);
         const double end = potential(model, problem, trial_);

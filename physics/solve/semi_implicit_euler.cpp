@@ -12,19 +12,20 @@ void SemiImplicitEuler::step(Model& model, double time, double dt) {
     constexpr double rounding = 1e-8;
     if (dt_ == 0.0) dt_ = dt;
     if (std::abs(dt - dt_) > rounding * dt) {
-        model.shift_velocities(0.5 * (dt_ - dt));
+        shift_velocities(model, 0.5 * (dt_ - dt));
         dt_ = dt;
     }
     acting_.clear();
     for (VelocityProjection* const projection : projections_)
         if (projection->prepare(model, time, dt)) acting_.push_back(projection);
     if (acting_.empty()) {
-        model.integrate(time, dt);
+        step_.move(model, time, dt);
         return;
     }
-    model.kick(time, dt);
-    for (VelocityProjection* const projection : acting_) projection->project(model, time, dt);
-    model.drift(time, dt);
+    step_.kick(model, time, dt);
+    for (VelocityProjection* const projection : acting_)
+        projection->project(model, step_, time, dt);
+    step_.drift(model, time, dt);
 }
 
 void SemiImplicitEuler::save(ArchiveWriter& ar) const { ar(dt_); }

@@ -5,6 +5,7 @@
 
 #include "incise/physics/body/motion_failure.h"
 #include "incise/physics/solve/integrator.h"
+#include "incise/physics/solve/solved_step.h"
 
 namespace incise::physics {
 
@@ -17,7 +18,7 @@ constexpr int few_iterations = 10;                   // the next increment may b
 }  // namespace
 
 bool Statics::equilibrate(Model& model, double time) {
-    if (structure_version_ == model.structure_version()) return false;
+    if (structure_version_ == model.version()) return false;
     step(model, time, 0.0);
     return true;
 }
@@ -25,10 +26,10 @@ bool Statics::equilibrate(Model& model, double time) {
 void Statics::require_equilibrium_of_free_components(const Model& model, double time) {
     if (newton_.free_components().empty()) return;
     next_outer_.resize(x_.size());
-    model.outer_forces_at(x_, time, next_outer_);
+    model.boundary().outer_forces_at(x_, time, model.workers(), next_outer_);
     // Found anew, since constraints may have moved components that they hold in part.
     for (const FreeComponent& piece :
-         find_free_components(model.fragments(), x_, model.constraints()))
+         find_free_components(model.fragments(), x_, model.boundary().constraints()))
         require_equilibrium(model.fragments(), model.mesh(), piece, x_, next_outer_);
 }
 
@@ -52,16 +53,16 @@ void Statics::take_increment(Model& model, double from, double to) {
                           .dot(displacement);
         released += held * imbalance_[n].dot(displacement);
     }
-    const double taken = model.take_step(x_, velocities_, reactions_, infinite);
-    model.record_work(work, released + taken);
+    const double taken = take_solved_step(model, x_, velocities_, reactions_, infinite);
+    model.energetics().record_work(work, released + taken);
     std::swap(elastic_, next_elastic_);
     std::swap(outer_, next_outer_);
 }
 
 void Statics::step(Model& model, double time, double dt) {
-    structure_version_ = model.structure_version();
+    structure_version_ = model.version();
     newton_.follow(model);
-    model.begin_step();
+    begin_solved_step(model);
     x_.assign(model.positions().begin(), model.positions().end());
     require_equilibrium_of_free_components(model, time + dt);
 
@@ -69,8 +70,8 @@ void Statics::step(Model& model, double time, double dt) {
     for (auto* field : {&velocities_, &elastic_, &reactions_, &holding_, &imbalance_})
         field->assign(num_nodes, Vec3::Zero());
     for (auto* field : {&outer_, &next_outer_}) field->resize(num_nodes);
-    model.elements().add_forces({x_, model.history(), infinite}, elastic_);
-    model.outer_forces_at(x_, time, outer_);
+    model.structure().elements().add_forces({x_, model.state().history(), infinite}, elastic_);
+    model.boundary().outer_forces_at(x_, time, model.workers(), outer_);
     for (std::size_t n = 0; n < num_nodes; ++n)
         imbalance_[n] = free_part(n, elastic_[n] + outer_[n]);
 
@@ -92,7 +93,7 @@ void Statics::step(Model& model, double time, double dt) {
                  << "th of the load step; the tissue may have become unstable there";
             throw MotionFailure(FailureCause::no_equilibrium, text.str());
         }
-        model.outer_forces_at(x_, now, next_outer_);
+        model.boundary().outer_forces_at(x_, now, model.workers(), next_outer_);
         take_increment(model, done, next);
         done = next;
         if (report.iterations <= few_iterations) increment *= 2.0;

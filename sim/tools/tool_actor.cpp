@@ -88,7 +88,7 @@ namespace {
 std::unique_ptr<ToolActor> sound_actor(const ToolDef& def, const Tissue& tissue) {
     auto actor =
         std::visit([&]<class Shape>(const Shape&) { return make_actor_of<Shape>(def); }, def.shape);
-    actor->require_fit(tissue, tissue.model.elements().materials());
+    actor->require_fit(tissue, tissue.model.structure().elements().materials());
     return actor;
 }
 

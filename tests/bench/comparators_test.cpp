@@ -29,7 +29,7 @@ constexpr double tolerance = 1e-12;  // of the largest force on a node
 void move_at_random(Model& model, test::Random& random) {
     for (double shake = 0.1;; shake *= 0.5) {
         physics::set_state(model, physics::random_state(model.mesh(), random, shake, 0.0));
-        if (model.min_volume_ratio() > 0.45) return;
+        if (model.energetics().min_volume_ratio() > 0.45) return;
         ASSERT_GT(shake, 1e-6);
     }
 }

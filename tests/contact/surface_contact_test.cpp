@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "incise/contact/contact.h"
+#include "incise/physics/solve/explicit_step.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_metrics.h"
 #include "support/exact_plane.h"
@@ -65,13 +66,13 @@ void expect_sound_collision(std::uint64_t seed, double friction) {
     contact.follow(model, halves.surface);
     physics::SemiImplicitEuler integrator;
     integrator.add_projection(contact);
-    const physics::Totals before = model.totals();
+    const physics::Totals before = model.energetics().totals();
     double scale = 0.0, most = 0.0, rest = 0.0, deepest = 0.0, time = 0.0;
     for (std::size_t n = 0; n < model.masses().size(); ++n)
         scale += model.masses()[n] * model.velocities()[n].norm();
     std::size_t num_points = 0;
     for (int i = 0; i < 600; ++i) {
-        const double dt = 0.4 * model.rest_stable_step();
+        const double dt = 0.4 * model.structure().rest_stable_step();
         integrator.step(model, time, dt);
         contact.book_work(model);
         time += dt;
@@ -81,7 +82,7 @@ void expect_sound_collision(std::uint64_t seed, double friction) {
         deepest = std::max(deepest, contact.max_penetration());
         num_points = std::max(num_points, contact.num_points());
     }
-    const physics::Totals after = model.totals();
+    const physics::Totals after = model.energetics().totals();
     EXPECT_GT(num_points, 10u);
     EXPECT_LE((after.momentum - before.momentum).norm(), 1e-13 * scale);
     EXPECT_LE((after.angular_momentum - before.angular_momentum).norm(),
@@ -102,9 +103,9 @@ TEST(SurfaceContact, KeepsMomentumAndAccountsForEnergy) {
 TEST(SurfaceContact, IsWhatStopsTheHalves) {
     Halves halves(1);
     double time = 0.0;
-    const double dt = 0.4 * halves.model.rest_stable_step();
+    const double dt = 0.4 * halves.model.structure().rest_stable_step();
     for (int i = 0; i < 600; ++i) {
-        halves.model.integrate(time, dt);
+        physics::ExplicitStep().move(halves.model, time, dt);
         time += dt;
         halves.model.compute_forces(time);
     }
@@ -132,7 +133,7 @@ struct SlidingCorner {
         : mesh(Mesh::build(test::jittered_cube(num_bricks, 0.1, seed)).mesh),
           model(mesh, table),
           surface(mesh),
-          dt(0.4 * model.rest_stable_step()) {
+          dt(0.4 * model.structure().rest_stable_step()) {
         test::Random random(seed);
         const Vec3 point = Vec3::Constant(0.85),
                    normal = (Vec3::Ones() + random.vector(0.3)).normalized();
@@ -174,7 +175,7 @@ TEST(SurfaceContact, SearchesOnlyNearWhatMoves) {
                 anew.follow(body.model, body.surface);
                 anew.add_points(body.model, new_solver);
             }
-            body.model.integrate(i * body.dt, body.dt);
+            physics::ExplicitStep().move(body.model, i * body.dt, body.dt);
             body.model.compute_forces((i + 1) * body.dt);
             solver.clear();
             contact.add_points(body.model, solver);
@@ -231,7 +232,7 @@ TEST(SurfaceContact, OfThinPlatesIsNoneBehindThem) {
         double time = 0.0, deepest = 0.0;
         model.compute_forces(time);
         while (time < 0.05) {
-            const double dt = 0.5 * model.rest_stable_step();
+            const double dt = 0.5 * model.structure().rest_stable_step();
             integrator.step(model, time, dt);
             contact.book_work(model);
             time += dt;

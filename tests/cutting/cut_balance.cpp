@@ -59,7 +59,7 @@ topology::MeshData with_all_materials(topology::MeshData data) {
     return data;
 }
 
-Balance::Balance(const Model& model) : totals(model.totals()) {
+Balance::Balance(const Model& model) : totals(model.energetics().totals()) {
     for (std::size_t n = 0; n < model.masses().size(); ++n) {
         const double m = model.masses()[n];
         moment += m * model.positions()[n];
@@ -83,12 +83,12 @@ void expect_kept(const Balance& before, const Model& model, const physics::BodyE
     EXPECT_NEAR(b.kinetic_energy, a.kinetic_energy, 1e-12 * a.kinetic_energy);
     // At rest there is nothing but rounding.
     EXPECT_NEAR(b.elastic_energy, a.elastic_energy,
-                1e-12 * (before.elastic_scale + 1e-3 * model.stiffness_energy()));
+                1e-12 * (before.elastic_scale + 1e-3 * model.structure().stiffness_energy()));
 }
 
 void expect_equal_to_a_fresh_one(Model& model, const physics::MaterialTable& table) {
     physics::MaterialTable of_now = table;
-    of_now.fibres.assign(model.fibres().begin(), model.fibres().end());
+    of_now.fibres.assign(model.structure().fibres().begin(), model.structure().fibres().end());
     Model fresh(model.mesh(), model.fragments(), of_now);
     fresh.set_state(model.positions(), model.velocities(), 0.0);
     EXPECT_EQ(Figures(model), Figures(fresh));

@@ -38,7 +38,7 @@ class Patient {
           rest_volume_(rest_volume(mesh_)),
           least_step_(std::numeric_limits<double>::infinity()) {
         for (const ElementId e : model_.fragments().elements())
-            least_step_ = std::min(least_step_, model_.element_stable_step(e));
+            least_step_ = std::min(least_step_, model_.structure().element_stable_step(e));
         constexpr std::array<double, 3> snaps = {0.0, default_snap, 0.1};
         const double snap = snaps[random_.below(3)];
         options_ = SplitOptions{snap};
@@ -138,7 +138,7 @@ class Patient {
         ASSERT_EQ(topology::validate(mesh_), std::vector<std::string>{});
         EXPECT_NEAR(rest_volume(mesh_), rest_volume_, 1e-12 * rest_volume_);
         ASSERT_EQ(fragments::validate(model_.fragments(), mesh_), std::vector<std::string>{});
-        EXPECT_GE(model_.rest_stable_step(), least_step_ * (1.0 - 1e-12));
+        EXPECT_GE(model_.structure().rest_stable_step(), least_step_ * (1.0 - 1e-12));
         expect_kept(before, model_, done);
         expect_equal_to_a_fresh_one(model_, table_);
     }

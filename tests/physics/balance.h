@@ -23,7 +23,7 @@ struct Balance {
     Vec3 moment_of_mass = Vec3::Zero();
     double energy_of_springs = 0.0;
 
-    explicit Balance(const Model& model) : totals(model.totals()) {
+    explicit Balance(const Model& model) : totals(model.energetics().totals()) {
         for (std::size_t n = 0; n < model.masses().size(); ++n) {
             const double p = model.masses()[n] * model.velocities()[n].norm();
             momentum_scale += p;
@@ -66,7 +66,7 @@ inline Carried carried_by(const Model& model, CellId cell) {
                               ? result.volume
                               : topology::rest_volume(mesh, cell);
     const bool is_tetrahedron = mesh.kind(cell) == topology::CellKind::tetrahedron;
-    Carried c{model.density(mesh.region(cell)) * volume, volume,
+    Carried c{model.structure().density(mesh.region(cell)) * volume, volume,
               result.energy * volume / result.volume, Vec3::Zero(),
               is_tetrahedron ? slenderness(mesh, cell) : 1.0};
     const auto corners = model.fragments().corners(e);
@@ -115,7 +115,7 @@ inline void expect_balance(const Balance& before, const Model& model, const Body
     if (merges) return;  // what comes together from two offsets moves, at a loss of motion
     // Rounded strains change an energy M e^2 / 2 by M e times their rounding: more than its share
     // where the strain e is small.
-    const double of_strain = std::sqrt(before.elastic_scale * model.stiffness_energy());
+    const double of_strain = std::sqrt(before.elastic_scale * model.structure().stiffness_energy());
     EXPECT_NEAR(a.elastic_energy - b.elastic_energy, energy,
                 energy_round_off * slenderness_of_removed * slenderness_of_removed *
                     (before.elastic_scale + 0.1 * of_strain));

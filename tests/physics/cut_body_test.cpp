@@ -49,7 +49,8 @@ struct MovingBody {
                    .mesh),
           model(mesh, FragmentMesh(mesh, light_share), table) {
         test::Random random(seed);
-        set_state(model, random_state(mesh, random, 0.005 * model.size(), model.size()));
+        set_state(model, random_state(mesh, random, 0.005 * model.structure().size(),
+                                      model.structure().size()));
         for (int i = 0; i < 3; ++i) step(model, time, 0.05 * model.stable_step());
         model.compute_totals_and_forces();
     }
@@ -84,7 +85,7 @@ TEST(CutBodies, KeepMassAndMomentaWithLightFragments) {
                 const Balance before(body.model);
                 const BodyEdit done = follow(body.model, random_cut(body.mesh, random));
                 ASSERT_EQ(fragments::validate(body.model.fragments(), body.mesh), no_violations);
-                const Totals &a = before.totals, b = body.model.totals();
+                const Totals &a = before.totals, b = body.model.energetics().totals();
                 EXPECT_NEAR(a.mass, b.mass, round_off * a.mass);
                 EXPECT_NEAR(a.rest_volume, b.rest_volume, round_off * a.rest_volume);
                 EXPECT_LE((a.momentum - b.momentum).norm(), 1e-12 * before.momentum_scale);
@@ -108,7 +109,7 @@ void expect_totals_of_arrays(const Model& model, const Balance& balance) {
         angular_momentum += arrays.mesh.points[n].cross(of_node);
         energy += 0.5 * of_node.dot(arrays.velocities[n]);
     }
-    const Totals totals = model.totals();
+    const Totals totals = model.energetics().totals();
     EXPECT_NEAR(mass, totals.mass, 1e-12 * mass);
     EXPECT_NEAR(energy, totals.kinetic_energy, 1e-12 * energy);
     EXPECT_LE((momentum - totals.momentum).norm(), 1e-12 * balance.momentum_scale);
@@ -152,14 +153,14 @@ TEST(CutBodies, EqualFreshOnesAndArchivedOnesAndCanBeUndone) {
             std::vector<double> gains;
             for (int i = 0; i < 3; ++i) {
                 before.emplace_back(body.model, body.time);
-                gains.push_back(body.model.embedding().largest_gain());
+                gains.push_back(body.model.structure().embedding().largest_gain());
                 edits.push_back(follow(body.model, random_cut(body.mesh, random)));
                 const ModelSnapshot now(body.model, body.time);
                 MaterialTable table = body.table;
                 table.fibres = now.fibres;
                 Model fresh(body.mesh, body.model.fragments(), table);
                 set_state(fresh, now.state, body.time);
-                fresh.set_history(now.history);
+                fresh.state().change().history.set_values(now.history);
                 expect_equal(ModelSnapshot(fresh, body.time), now);
 
                 ArchiveWriter writer;
@@ -170,15 +171,15 @@ TEST(CutBodies, EqualFreshOnesAndArchivedOnesAndCanBeUndone) {
                 Model restored(body.mesh, without_fibres, reader, body.time);
                 EXPECT_TRUE(reader.is_at_end());
                 EXPECT_TRUE(restored.fragments() == body.model.fragments());
-                EXPECT_EQ(restored.embedding().largest_gain(),
-                          body.model.embedding().largest_gain());
+                EXPECT_EQ(restored.structure().embedding().largest_gain(),
+                          body.model.structure().embedding().largest_gain());
                 expect_equal(ModelSnapshot(restored, body.time), now);
                 EXPECT_TRUE(
                     std::ranges::equal(restored.mesh_positions(), body.model.mesh_positions()));
             }
             for (; !edits.empty(); edits.pop_back(), before.pop_back(), gains.pop_back()) {
                 take_back(body.mesh, body.model, edits.back());
-                EXPECT_EQ(body.model.embedding().largest_gain(), gains.back());
+                EXPECT_EQ(body.model.structure().embedding().largest_gain(), gains.back());
                 expect_equal(ModelSnapshot(body.model, body.time), before.back());
             }
         }
@@ -200,13 +201,15 @@ TEST(CutBodies, HaveTheForcesOfTheirEnergy) {
         model.compute_forces(body.time);
         std::vector<Vec3> readable(model.positions().size(), Vec3::Zero());
         // Without time, the terms of the Prony series stay as they are.
-        model.elements().for_each_block([&](const ElementBlock& block) {
+        model.structure().elements().for_each_block([&](const ElementBlock& block) {
             for (const ElementId e : block.elements()) {
-                const ElementResult result = block.result(e, model.positions(), model.history());
+                const ElementResult result =
+                    block.result(e, model.positions(), model.state().history());
                 EXPECT_TRUE(std::isfinite(result.energy));
             }
         });
-        model.elements().add_forces({model.positions(), model.history(), 0.0}, readable);
+        model.structure().elements().add_forces({model.positions(), model.state().history(), 0.0},
+                                                readable);
         double scale = 0.0;
         for (const Vec3& f : readable) scale = std::max(scale, f.norm());
         const double rounding = precision == Precision::double_precision ? 1e-11 : 1e-4;
@@ -223,13 +226,13 @@ TEST(CutBodies, HaveTheForcesOfTheirEnergy) {
                     std::vector<Vec3> moved = x;
                     moved[n][c] += at;
                     double sum = 0.0;
-                    model.elements().for_each_block([&](const ElementBlock& block) {
-                        sum += block.potential({moved, model.history(), 0.01});
+                    model.structure().elements().for_each_block([&](const ElementBlock& block) {
+                        sum += block.potential({moved, model.state().history(), 0.01});
                     });
                     return sum;
                 };
                 std::vector<Vec3> forces(x.size(), Vec3::Zero());
-                model.elements().add_forces({x, model.history(), 0.01}, forces);
+                model.structure().elements().add_forces({x, model.state().history(), 0.01}, forces);
                 EXPECT_NEAR(-(potential(h) - potential(-h)) / (2.0 * h), forces[n][c],
                             1e-5 * scale);
             }
@@ -321,7 +324,8 @@ TEST(CutBodies, BearTheLoadsOfTheWhole) {
             set_state(model, state);
             Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
             for (const NodeId n : model.fragments().nodes()) {
-                const Vec3 f = model.outer_forces()[n.index()] + model.elastic_forces()[n.index()];
+                const Vec3 f =
+                    model.boundary().outer_forces()[n.index()] + model.elastic_forces()[n.index()];
                 force += f;
                 moment += model.positions()[n.index()].cross(f);
             }
@@ -458,10 +462,11 @@ TEST(CutBodies, FindTheirEquilibrium) {
     model.compute_forces(1.0);
     double scale = 0.0, imbalance = 0.0;
     for (const NodeId n : model.fragments().nodes()) {
-        if (model.constraints().of_node(n.index())) continue;
-        const Vec3 f = model.elastic_forces()[n.index()] + model.outer_forces()[n.index()];
+        if (model.boundary().constraints().of_node(n.index())) continue;
+        const Vec3 f =
+            model.elastic_forces()[n.index()] + model.boundary().outer_forces()[n.index()];
         imbalance = std::max(imbalance, f.norm());
-        scale = std::max(scale, model.outer_forces()[n.index()].norm());
+        scale = std::max(scale, model.boundary().outer_forces()[n.index()].norm());
     }
     EXPECT_LE(imbalance, 1e-7 * scale);
     EXPECT_GT(model.max_displacement(), 1e-3);
@@ -474,11 +479,11 @@ TEST(CutBodies, AreNeverStifferThanTheirStiffestElement) {
             MovingBody body(family->data, fragments::default_light_share, seed);
             double least = std::numeric_limits<double>::infinity();
             for (const ElementId e : body.model.fragments().elements())
-                least = std::min(least, body.model.element_stable_step(e));
+                least = std::min(least, body.model.structure().element_stable_step(e));
             test::Random random(seed);
             for (int i = 0; i < 4; ++i) {
                 follow(body.model, random_cut(body.mesh, random));
-                EXPECT_GE(body.model.rest_stable_step(), least * (1.0 - 1e-12));
+                EXPECT_GE(body.model.structure().rest_stable_step(), least * (1.0 - 1e-12));
             }
         }
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 
+#include "incise/physics/solve/explicit_step.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_edit.h"
 #include "tests/physics/balance.h"
@@ -64,7 +65,7 @@ Mesh one_tetrahedron() { return Mesh::build(test::mesh_families().front().data).
 std::vector<Vec3> loads_at_rest(Model& model) {
     set_state(model, rest_state(model.fragments()));
     const double dt = 1e-4;
-    model.integrate(0.0, dt);
+    ExplicitStep().move(model, 0.0, dt);
     std::vector<Vec3> forces;
     for (std::size_t n = 0; n < model.masses().size(); ++n)
         forces.push_back(model.masses()[n] / dt * model.velocities()[n]);
@@ -138,7 +139,7 @@ TEST(Bisection, KeepsForceAndMomentOfTractionAndPressure) {
             set_state(model, state);
             Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
             const double dt = 1e-4;
-            model.integrate(0.0, dt);
+            ExplicitStep().move(model, 0.0, dt);
             for (std::size_t n = 0; n < state.positions.size(); ++n) {
                 const Vec3 f = model.masses()[n] / dt * model.velocities()[n];
                 force += f;
@@ -388,11 +389,11 @@ TEST(Constraints, IndexedEditByEditEqualFreshOnes) {
         Model model(mesh, table_of_one_law(soft_law), s);
         const auto expect_equal_to_fresh_ones = [&](const ChangeSet& changes) {
             for (Constraint& constraint : constraints) constraint.nodes.apply(mesh, changes);
-            const Constraints fresh(
-                {mesh, model.fragments(), model.elements(), model.masses(), model.positions()},
-                constraints);
+            const Constraints fresh({mesh, model.fragments(), model.structure().elements(),
+                                     model.masses(), model.positions()},
+                                    constraints);
             for (std::size_t n = 0; n < model.fragments().node_capacity(); ++n) {
-                const auto *a = model.constraints().of_node(n), *b = fresh.of_node(n);
+                const auto *a = model.boundary().constraints().of_node(n), *b = fresh.of_node(n);
                 ASSERT_EQ(a == nullptr, b == nullptr) << n;
                 ASSERT_TRUE(!a || *a == *b) << n;
             }

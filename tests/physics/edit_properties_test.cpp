@@ -10,6 +10,7 @@
 
 #include "incise/base/error.h"
 #include "incise/fragments/validate.h"
+#include "incise/physics/solve/explicit_step.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
 #include "support/generated_body.h"
@@ -263,14 +264,14 @@ struct StepOf {
     std::vector<Vec3> reactions;
 
     StepOf(Model& model, const ModelSnapshot& before) {
-        model.integrate(now_time, short_step);
+        ExplicitStep().move(model, now_time, short_step);
         state = state_of(model);
-        for (std::size_t s = 0; s < model.num_constraints(); ++s) {
-            reactions.push_back(model.reactions()[s].force);
-            reactions.push_back(model.reactions()[s].torque);
+        for (std::size_t s = 0; s < model.boundary().constraints().size(); ++s) {
+            reactions.push_back(model.boundary().reactions()[s].force);
+            reactions.push_back(model.boundary().reactions()[s].torque);
         }
         set_state(model, before.state, now_time);
-        model.set_history(before.history);
+        model.state().change().history.set_values(before.history);
     }
 };
 
@@ -302,7 +303,8 @@ class FollowingBody {
         const auto changes = mesh_.carry_out(step);
         if (!changes) return;
         // As a run does, which has not looked at the body as it is.
-        model_.set_history(model_.history().values());  // nothing is known any more
+        model_.state().change().history.set_values(
+            model_.state().history().values());  // nothing is known any more
         model_.compute_totals_and_forces();
         if (step.fate == Fate::undo) {
             model_.apply(mesh_.mesh(), inverse(followed_.back()));
@@ -330,9 +332,9 @@ class FollowingBody {
         MaterialTable table = table_;
         table.fibres = followed.fibres;
         Model fresh(mesh_.mesh(), model_.fragments(), table,
-                    acting_.now(mesh_.mesh(), model_.mesh_masses()));
+                    acting_.now(mesh_.mesh(), model_.structure().mesh_masses()));
         set_state(fresh, followed.state, now_time);
-        fresh.set_history(followed.history);
+        fresh.state().change().history.set_values(followed.history);
         expect_equal(ModelSnapshot(fresh, now_time), followed);
         const StepOf one(model_, followed), other(fresh, followed);
         EXPECT_EQ(one.state, other.state);

@@ -12,6 +12,7 @@
 
 #include "incise/base/error.h"
 #include "incise/fragments/validate.h"
+#include "incise/physics/solve/explicit_step.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
@@ -120,7 +121,8 @@ class EditedBody {
   private:
     /// As a run does, which has not looked at the body as it is.
     void compute_ahead() {
-        model_.set_history(model_.history().values());  // nothing is known any more
+        model_.state().change().history.set_values(
+            model_.state().history().values());  // nothing is known any more
         model_.compute_totals_and_forces();
     }
 
@@ -137,15 +139,16 @@ class EditedBody {
         table.fibres = expected.fibres;
         Model fresh(mesh_, model_.fragments(), table, boundary_conditions(descent_.now(mesh_)));
         set_state(fresh, expected.state, time);
-        fresh.set_history(expected.history);
+        fresh.state().change().history.set_values(expected.history);
         expect_equal(ModelSnapshot(fresh, time), expected);
         const double dt = short_step();
-        model_.integrate(time, dt);
-        fresh.integrate(time, dt);
+        ExplicitStep().move(model_, time, dt);
+        ExplicitStep().move(fresh, time, dt);
         expect_equal(ModelSnapshot(model_, time + dt), ModelSnapshot(fresh, time + dt));
-        EXPECT_EQ(model_.min_volume_ratio(), fresh.min_volume_ratio());
-        for (std::size_t i = 0; i < model_.num_constraints(); ++i)
-            EXPECT_EQ(model_.reactions()[i].force, fresh.reactions()[i].force);
+        EXPECT_EQ(model_.energetics().min_volume_ratio(), fresh.energetics().min_volume_ratio());
+        for (std::size_t i = 0; i < model_.boundary().constraints().size(); ++i)
+            EXPECT_EQ(model_.boundary().reactions()[i].force,
+                      fresh.boundary().reactions()[i].force);
     }
 
     /// So short that no node leaves the body, however stiff the strain has made its law.
@@ -271,8 +274,9 @@ TEST(RandomEdits, UndoneLeaveTheMotionAsItWas) {
             step(reference, time_of_reference, dt);
         }
         expect_equal(ModelSnapshot(model, time), ModelSnapshot(reference, time));
-        for (std::size_t i = 0; i < model.num_constraints(); ++i)
-            EXPECT_EQ(model.reactions()[i].force, reference.reactions()[i].force);
+        for (std::size_t i = 0; i < model.boundary().constraints().size(); ++i)
+            EXPECT_EQ(model.boundary().reactions()[i].force,
+                      reference.boundary().reactions()[i].force);
     }
 }
 
@@ -378,7 +382,7 @@ TEST(ModelApply, JoiningKeepsMassMomentumAndCentreOfMass) {
     for (const auto& pair : opened.faces_opened) edit.close(pair.a, pair.b);
     model.apply(model.mesh(), edit.commit());
     ASSERT_EQ(topology::components(mesh).count, 1);
-    const Totals after = model.totals();
+    const Totals after = model.energetics().totals();
     EXPECT_NEAR(after.mass, before.totals.mass, round_off * after.mass);
     EXPECT_LE((after.momentum - before.totals.momentum).norm(), round_off * before.momentum_scale);
     EXPECT_LE((moment_of_mass() - moment_before).norm(), round_off * after.mass * 3.0);

@@ -242,23 +242,27 @@ TEST(Fibres, DirectionsAreInheritedAndComeBack) {
     Model model(mesh, table_of_one_law(dispersed));
     test::Random random(6);
     set_state(model, random_state(mesh, random, 0.02, 0.0));
-    const std::vector<Vec3> first(model.fibres().begin(), model.fibres().end());
+    const std::vector<Vec3> first(model.structure().fibres().begin(),
+                                  model.structure().fibres().end());
     ASSERT_EQ(first.size(), mesh.element_capacity());
     std::vector<BodyEdit> edits;
     std::size_t num_parts = 0;
     for (int i = 0; i < 60; ++i) {
         edits.push_back(follow(model, test::random_edit(mesh, random)));
-        ASSERT_EQ(model.fibres().size(), model.fragments().element_capacity());
+        ASSERT_EQ(model.structure().fibres().size(), model.fragments().element_capacity());
         for (const auto& record : edits.back().physics.mesh.elements_added)
             if (record.parent.is_valid()) {
                 ++num_parts;
-                EXPECT_EQ(model.fibres()[record.id.index()], model.fibres()[record.parent.index()]);
+                EXPECT_EQ(model.structure().fibres()[record.id.index()],
+                          model.structure().fibres()[record.parent.index()]);
             }
         if (mesh.num_elements() == 0) break;
     }
     EXPECT_GT(num_parts, 20u);
     for (; !edits.empty(); edits.pop_back()) take_back(mesh, model, edits.back());
-    EXPECT_EQ(std::vector<Vec3>(model.fibres().begin(), model.fibres().end()), first);
+    EXPECT_EQ(
+        std::vector<Vec3>(model.structure().fibres().begin(), model.structure().fibres().end()),
+        first);
 }
 
 TEST(Fibres, AreNeededByTheirLaw) {

@@ -82,10 +82,10 @@ Outcome solve(const Experiment& experiment, int n) {
     const int num_steps = amount > 0.1 ? 5 : 1;
     for (int i = 0; i < num_steps; ++i)
         statics.step(model, static_cast<double>(i) / num_steps, 1.0 / num_steps);
-    return {experiment.kind == "tors"    ? model.reactions()[1].torque.z()
-            : experiment.kind == "shear" ? model.reactions()[1].force.x()
-                                         : model.reactions()[1].force.z(),
-            model.volume_change()};
+    return {experiment.kind == "tors"    ? model.boundary().reactions()[1].torque.z()
+            : experiment.kind == "shear" ? model.boundary().reactions()[1].force.x()
+                                         : model.boundary().reactions()[1].force.z(),
+            model.energetics().volume_change()};
 }
 
 TEST(FiveExperiments, ConvergeToTheQuadraticElementsOfCalculix) {

@@ -42,7 +42,7 @@ EnergyRecord run(Model& model, double dt, int num_steps) {
     double time = 0.0;
     std::vector<Vec3> before;
     for (int i = 0; i < num_steps; ++i) {
-        const double W = model.totals().elastic_energy;
+        const double W = model.energetics().totals().elastic_energy;
         before.assign(model.velocities().begin(), model.velocities().end());
         step(model, time, dt);
         double staggered = 0.0, raw = 0.0, mean = 0.0;
@@ -98,12 +98,12 @@ TEST(FreeMotion, KeepsMomentaUpToRandomRoundOff) {
         for (unsigned seed = 0; seed < num_starts; ++seed) {
             Model model(mesh, table_of_one_law(law));
             set_state(model, swinging_state(mesh, 0.01, seed));
-            const Totals start = model.totals();
+            const Totals start = model.energetics().totals();
             const MomentumScales scale(model);
-            const double dt = 0.5 * model.rest_stable_step();
+            const double dt = 0.5 * model.structure().rest_stable_step();
             double time = 0.0;
             for (int i = 0; i < num_steps; ++i) step(model, time, dt);
-            const Totals end = model.totals();
+            const Totals end = model.energetics().totals();
             linear += (end.momentum - start.momentum).squaredNorm() / (scale.linear * scale.linear);
             angular += (end.angular_momentum - start.angular_momentum).squaredNorm() /
                        (scale.angular * scale.angular);
@@ -129,10 +129,11 @@ TEST(FreeMotion, KeepsMomentaAndDoesNotDriftInEnergy) {
         SCOPED_TRACE(free.name);
         Model model(mesh, table_of_one_law(free.law));
         set_state(model, swinging_state(mesh, 0.01));
-        const Totals start = model.totals();
+        const Totals start = model.energetics().totals();
         const MomentumScales scale(model);
-        const EnergyRecord record = run(model, 0.5 * model.rest_stable_step(), free.num_steps);
-        const Totals end = model.totals();
+        const EnergyRecord record =
+            run(model, 0.5 * model.structure().rest_stable_step(), free.num_steps);
+        const Totals end = model.energetics().totals();
         // One draw of the random walk of round-off: three of the deviations that are held below.
         const double round_off = 3.0 * deviation_per_step * std::sqrt(free.num_steps);
         EXPECT_LE((end.momentum - start.momentum).norm(), round_off * scale.linear);
@@ -164,13 +165,13 @@ TEST(FreeMotion, OfHybridSpringsKeepsMomentaWithoutEnergyDrift) {
             SCOPED_TRACE(testing::Message() << "A " << ratio << ", kappa " << kappa);
             Model model(mesh, table_of_one_material(HybridSprings{4e3, kappa, ratio}));
             set_state(model, swinging_state(mesh, 0.01));
-            const Totals before = model.totals();
+            const Totals before = model.energetics().totals();
             double scale = 0.0;  // of momenta: the body is one metre wide
             for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
                 scale += model.masses()[n] * model.velocities()[n].norm();
             const int num_steps = 40000;
-            const auto record = run(model, 0.5 * model.rest_stable_step(), num_steps);
-            const Totals after = model.totals();
+            const auto record = run(model, 0.5 * model.structure().rest_stable_step(), num_steps);
+            const Totals after = model.energetics().totals();
             EXPECT_LE((after.momentum - before.momentum).norm(), 1e-12 * scale);
             EXPECT_LE((after.angular_momentum - before.angular_momentum).norm(), 1e-12 * scale);
             const std::span<const double> staggered(record.staggered);
@@ -188,7 +189,7 @@ TEST(FreeMotion, KeepsTheStaggeredEnergyOfSmallMotion) {
     Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}));
     const auto relative_swing = [&](double amplitude) {
         set_state(model, swinging_state(mesh, amplitude));
-        const EnergyRecord record = run(model, 0.5 * model.rest_stable_step(), 2000);
+        const EnergyRecord record = run(model, 0.5 * model.structure().rest_stable_step(), 2000);
         return swing(record.staggered) / average(record.staggered);
     };
     const double moderate = relative_swing(1e-3), small = relative_swing(1e-4);
@@ -199,7 +200,7 @@ TEST(FreeMotion, KeepsTheStaggeredEnergyOfSmallMotion) {
 TEST(FreeMotion, MeetsTheOrderOfTheIntegrator) {
     const Mesh mesh = Mesh::build(test::jittered_cube(2, 0.1, 3)).mesh;
     Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}));
-    const double dt = 0.25 * model.rest_stable_step();
+    const double dt = 0.25 * model.structure().rest_stable_step();
     const auto swings = [&](double step_size, int num_steps) {
         set_state(model, swinging_state(mesh, 0.05));
         const EnergyRecord record = run(model, step_size, num_steps);
@@ -217,19 +218,20 @@ TEST(FreeMotion, TakesFromGravityWhatItsEnergyLoses) {
     s.gravity = {0.1, -0.2, -0.981};
     Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}), s);
     set_state(model, swinging_state(mesh, 0.05));
-    const double start = model.totals().gravity_energy;
-    const Vec3 momentum = model.totals().momentum;
+    const double start = model.energetics().totals().gravity_energy;
+    const Vec3 momentum = model.energetics().totals().momentum;
     double time = 0.0;
-    const double dt = 0.5 * model.rest_stable_step();
+    const double dt = 0.5 * model.structure().rest_stable_step();
     double path = 0.0;  // of work, up and down
     for (int i = 0; i < 500; ++i) {
-        const double before = model.external_work();
+        const double before = model.energetics().external_work();
         step(model, time, dt);
-        path += std::abs(model.external_work() - before);
+        path += std::abs(model.energetics().external_work() - before);
     }
-    EXPECT_NEAR(model.external_work(), start - model.totals().gravity_energy, 1e-13 * path);
-    EXPECT_EQ(model.dissipated_energy(), 0.0);
-    const Totals end = model.totals();
+    EXPECT_NEAR(model.energetics().external_work(),
+                start - model.energetics().totals().gravity_energy, 1e-13 * path);
+    EXPECT_EQ(model.energetics().dissipated_energy(), 0.0);
+    const Totals end = model.energetics().totals();
     EXPECT_LE((end.momentum - momentum - end.mass * time * s.gravity).norm(),
               1e-12 * end.mass * time * s.gravity.norm());
 }
@@ -257,16 +259,17 @@ TEST(DrivenMotion, KeepsTheEnergyLedger) {
         Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}), s);
         double time = 0.0, largest = 0.0;
         const double dt = end_time / num_steps;
-        EXPECT_LT(dt, 0.25 * model.rest_stable_step());
+        EXPECT_LT(dt, 0.25 * model.structure().rest_stable_step());
         for (int i = 0; i < num_steps; ++i) {
             step(model, time, dt);
-            const Totals now = model.totals();
-            largest =
-                std::max(largest, std::abs(now.kinetic_energy + now.elastic_energy +
-                                           model.dissipated_energy() - model.external_work()));
+            const Totals now = model.energetics().totals();
+            largest = std::max(largest, std::abs(now.kinetic_energy + now.elastic_energy +
+                                                 model.energetics().dissipated_energy() -
+                                                 model.energetics().external_work()));
         }
-        EXPECT_GT(model.dissipated_energy(), 0.0);
-        return largest / (std::abs(model.external_work()) + model.dissipated_energy());
+        EXPECT_GT(model.energetics().dissipated_energy(), 0.0);
+        return largest / (std::abs(model.energetics().external_work()) +
+                          model.energetics().dissipated_energy());
     };
     const double coarse = ledger_error(250), middle = ledger_error(500), fine = ledger_error(1000);
     EXPECT_LE(coarse, 0.01);
@@ -282,13 +285,13 @@ TEST(DampedMotion, LosesMomentumAtItsRate) {
     BodyState state = swinging_state(mesh, 0.05);
     for (Vec3& v : state.velocities) v += Vec3(0.3, -0.2, 0.1);
     set_state(model, state);
-    const Vec3 start = model.totals().momentum;
+    const Vec3 start = model.energetics().totals().momentum;
     double time = 0.0;
-    const double dt = 0.5 * model.rest_stable_step();
+    const double dt = 0.5 * model.structure().rest_stable_step();
     for (int i = 0; i < 100; ++i) step(model, time, dt);
     // Implicitly damped: each step divides by 1 + c dt.
     const Vec3 expected = start * std::pow(1.0 + s.damping * dt, -100);
-    EXPECT_LE((model.totals().momentum - expected).norm(), 1e-12 * start.norm());
+    EXPECT_LE((model.energetics().totals().momentum - expected).norm(), 1e-12 * start.norm());
 }
 
 }  // namespace

@@ -81,21 +81,22 @@ Ending run(const Mesh& mesh, const Law& law, Start start, std::uint64_t seed, do
         5.0;  // 1/s; sound takes some tenths of a second across the bodies
     Model model(mesh, table_of_one_law(law), boundary_conditions);
     Ending ending;
-    const double scale = model.stiffness_energy(), dt = safety * model.stable_step();
+    const double scale = model.structure().stiffness_energy(), dt = safety * model.stable_step();
     double time = 0.0;
     try {
         set_state(model, state_at(start, mesh, seed));
         for (int i = 1; i * safety <= 600.0 && ending.is_finite; ++i) {
             step(model, time, dt);
             if (i % 100 != 0) continue;
-            const Totals now = model.totals();
+            const Totals now = model.energetics().totals();
             ending.is_finite = std::isfinite(now.elastic_energy + now.kinetic_energy);
             // Isochoric laws have energies below zero in elements of no volume.
             ending.is_at_rest = std::abs(now.elastic_energy) < 1e-8 * scale &&
-                                now.kinetic_energy < 1e-8 * scale && model.min_volume_ratio() > 0.5;
+                                now.kinetic_energy < 1e-8 * scale &&
+                                model.energetics().min_volume_ratio() > 0.5;
             if (ending.is_at_rest || (time > 4.0 && now.kinetic_energy < 1e-16 * scale)) break;
         }
-        ending.min_volume_ratio = model.min_volume_ratio();
+        ending.min_volume_ratio = model.energetics().min_volume_ratio();
         ending.num_wound_edges = find_winding(mesh, model.positions()).num_edges;
         for (const Vec3& x : model.positions()) ending.is_finite &= x.allFinite();
     } catch (const PhysicsError& error) {
@@ -225,7 +226,7 @@ TEST(Winding, IsFoundWhereElementsCircleAnEdgeTwice) {
     EXPECT_EQ(find_winding(mesh, turned_round_the_diagonal(mesh, 1.0).positions).num_edges, 0u);
     Model model(mesh, table_of_one_law(NeoHookean{1923.0, 5769.0}));
     set_state(model, turned_round_the_diagonal(mesh, 2.0));
-    EXPECT_GT(model.min_volume_ratio(), 0.3);
+    EXPECT_GT(model.energetics().min_volume_ratio(), 0.3);
     EXPECT_EQ(find_winding(mesh, model.positions()).num_edges, 1u);
 }
 

@@ -32,17 +32,19 @@ struct ModelSnapshot {
     ModelSnapshot(Model& model, double time) : state(state_of(model)) {
         model.compute_forces(time);
         forces.assign(model.elastic_forces().begin(), model.elastic_forces().end());
-        outer_forces.assign(model.outer_forces().begin(), model.outer_forces().end());
+        outer_forces.assign(model.boundary().outer_forces().begin(),
+                            model.boundary().outer_forces().end());
         masses.assign(model.masses().begin(), model.masses().end());
         for (const ElementId e : living_elements(model.fragments())) {
             const ElementResult result = model.element_result(e);
             volumes.push_back(result.volume);
             energies.push_back(result.energy);
         }
-        history.assign(model.history().values().begin(), model.history().values().end());
-        fibres.assign(model.fibres().begin(), model.fibres().end());
+        history.assign(model.state().history().values().begin(),
+                       model.state().history().values().end());
+        fibres.assign(model.structure().fibres().begin(), model.structure().fibres().end());
         stable_step = model.stable_step();
-        totals = figures_of(model.totals());
+        totals = figures_of(model.energetics().totals());
     }
 };
 

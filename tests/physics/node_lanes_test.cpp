@@ -1,7 +1,7 @@
 // The step of several nodes side by side against that of one after the other, on each kind of
 // processor at hand.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/body/node_lanes.h"
+#include "incise/physics/solve/node_lanes.h"
 
 #include <gtest/gtest.h>
 

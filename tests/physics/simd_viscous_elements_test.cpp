@@ -264,9 +264,9 @@ TEST(SimdViscousElements, FollowABodyInEitherPrecision) {
         double time = 0.0;
         const double dt = 0.3 * model.stable_step();
         for (int i = 0; i < 5; ++i) step(model, time, dt);
-        ViscousHistory expected = model.history();
+        ViscousHistory expected = model.state().history();
         const BodyState before = state_of(model);
-        const double taken_before = model.dissipated_energy();
+        const double taken_before = model.energetics().dissipated_energy();
         step(model, time, dt);
         double taken = 0.0;
         for (const CellId e : living_elements(mesh)) {
@@ -285,9 +285,9 @@ TEST(SimdViscousElements, FollowABodyInEitherPrecision) {
         double scale = 0.0;
         for (const double x : expected.values()) scale = std::max(scale, std::abs(x));
         for (std::size_t i = 0; i < expected.values().size(); ++i)
-            EXPECT_NEAR(model.history().values()[i], expected.values()[i], 1e-12 * scale);
+            EXPECT_NEAR(model.state().history().values()[i], expected.values()[i], 1e-12 * scale);
         EXPECT_GT(std::abs(taken), 0.0);
-        EXPECT_NEAR(model.dissipated_energy() - taken_before, taken, 1e-12 * scale);
+        EXPECT_NEAR(model.energetics().dissipated_energy() - taken_before, taken, 1e-12 * scale);
     }
 }
 

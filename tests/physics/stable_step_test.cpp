@@ -194,7 +194,7 @@ TEST(StableStep, DecidesBetweenBoundedAndExplodingMotion) {
         EXPECT_NE(text.find("element "), std::string::npos) << text;
         EXPECT_NE(text.find("above the stable step"), std::string::npos) << text;
         std::ostringstream bound;
-        bound << model.rest_stable_step();
+        bound << model.structure().rest_stable_step();
         EXPECT_NE(text.find(bound.str()), std::string::npos) << text;
     }
 }

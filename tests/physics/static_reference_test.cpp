@@ -103,7 +103,8 @@ class Relaxation {
         run_until(ramp_time + 2.0 * dt_);
         for (int round = 0; round < 400; ++round) {
             for (int i = 0; i < 100; ++i) step(model_, time_, dt_);
-            if (net_force_in_next_step() < 1e-11 * model_.reactions()[1].force.norm()) return;
+            if (net_force_in_next_step() < 1e-11 * model_.boundary().reactions()[1].force.norm())
+                return;
         }
         FAIL() << "no equilibrium by " << time_ << " s";
     }
@@ -165,7 +166,7 @@ void expect_solution(const Model& model, const CutReference& reference,
     }
     EXPECT_LE(largest_error, displacement_tolerance * largest);
 
-    const Vec3& reaction = model.reactions()[1].force;
+    const Vec3& reaction = model.boundary().reactions()[1].force;
     for (int c = 0; c < 3; ++c) {
         if (std::isnan(solution.reaction[c])) continue;
         EXPECT_NEAR(reaction[c], solution.reaction[c], reaction_tolerance * reaction.norm());

@@ -87,17 +87,21 @@ TEST(Statics, EndWhereDampedMotionEnds) {
         EXPECT_LE(largest_distance(still.positions(), moving.positions()),
                   1e-7 * moving.max_displacement());
         for (std::size_t i = 0; i < 2; ++i) {
-            const double force = moving.reactions()[i].force.norm();
-            EXPECT_LE((still.reactions()[i].force - moving.reactions()[i].force).norm(),
-                      1e-6 * force);
-            EXPECT_LE((still.reactions()[i].torque - moving.reactions()[i].torque).norm(),
-                      1e-6 * force);
+            const double force = moving.boundary().reactions()[i].force.norm();
+            EXPECT_LE(
+                (still.boundary().reactions()[i].force - moving.boundary().reactions()[i].force)
+                    .norm(),
+                1e-6 * force);
+            EXPECT_LE(
+                (still.boundary().reactions()[i].torque - moving.boundary().reactions()[i].torque)
+                    .norm(),
+                1e-6 * force);
         }
-        EXPECT_EQ(still.totals().kinetic_energy, 0.0);
+        EXPECT_EQ(still.energetics().totals().kinetic_energy, 0.0);
         // In equilibrium constraints bear all loads.
-        Vec3 all = still.reactions()[0].force + still.reactions()[1].force;
-        for (const Vec3& f : still.outer_forces()) all += f;
-        EXPECT_LE(all.norm(), 1e-9 * still.reactions()[0].force.norm());
+        Vec3 all = still.boundary().reactions()[0].force + still.boundary().reactions()[1].force;
+        for (const Vec3& f : still.boundary().outer_forces()) all += f;
+        EXPECT_LE(all.norm(), 1e-9 * still.boundary().reactions()[0].force.norm());
     }
 }
 
@@ -133,9 +137,9 @@ TEST(Statics, RecordTheWorkThatTheBodyKeeps) {
         Statics statics;
         for (int i = 0; i < num_steps; ++i)
             statics.step(model, i / double(num_steps), 1.0 / num_steps);
-        const double kept = model.elastic_energy();
-        errors.push_back(std::abs(model.external_work() - kept) / kept);
-        EXPECT_NEAR(model.dissipated_energy(), 0.0, 1e-9 * kept);
+        const double kept = model.energetics().elastic_energy();
+        errors.push_back(std::abs(model.energetics().external_work() - kept) / kept);
+        EXPECT_NEAR(model.energetics().dissipated_energy(), 0.0, 1e-9 * kept);
     }
     EXPECT_LT(errors[0], 5e-3);
     EXPECT_NEAR(errors[0] / errors[1], 4.0, 1.0);  // of second order
@@ -149,14 +153,15 @@ TEST(Statics, RecordWhatACutReleasesAsDissipated) {
     Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     statics.step(model, 0.0, 1.0);
-    const double before = model.elastic_energy(), work = model.external_work(),
-                 dissipated = model.dissipated_energy();
+    const double before = model.energetics().elastic_energy(),
+                 work = model.energetics().external_work(),
+                 dissipated = model.energetics().dissipated_energy();
     model.apply(model.mesh(), open_across(mesh, 0.1, 0.05));
     statics.equilibrate(model, 1.0);
-    const double lost = before - model.elastic_energy();
+    const double lost = before - model.energetics().elastic_energy();
     EXPECT_GT(lost, 0.05 * before);
-    EXPECT_EQ(model.external_work(), work);  // constraints stand still
-    EXPECT_NEAR(model.dissipated_energy() - dissipated, lost, 0.02 * lost);
+    EXPECT_EQ(model.energetics().external_work(), work);  // constraints stand still
+    EXPECT_NEAR(model.energetics().dissipated_energy() - dissipated, lost, 0.02 * lost);
 }
 
 TEST(Statics, LeaveFreeComponentsAndRefusePushedOnes) {
@@ -173,9 +178,9 @@ TEST(Statics, LeaveFreeComponentsAndRefusePushedOnes) {
         Statics statics;
         statics.step(model, 0.0, 1.0);
         // The free half has its shape again, about where it was; the other is as at rest.
-        EXPECT_LE(model.totals().elastic_energy, 1e-12);
-        EXPECT_NEAR(model.totals().centre_of_mass.y(), 0.05 + 0.15, 0.08);
-        EXPECT_LE(model.reactions()[0].force.norm(), 1e-6);
+        EXPECT_LE(model.energetics().totals().elastic_energy, 1e-12);
+        EXPECT_NEAR(model.energetics().totals().centre_of_mass.y(), 0.05 + 0.15, 0.08);
+        EXPECT_LE(model.boundary().reactions()[0].force.norm(), 1e-6);
     }
     s.gravity = {0.0, 0.0, -1.0};
     Model model(mesh, table_of_one_law(soft_law), s);
@@ -203,8 +208,8 @@ TEST(Statics, LeadAComponentThatIsHeldInPart) {
     Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     for (int i = 0; i < 2; ++i) statics.step(model, 0.5 * i, 0.5);
-    EXPECT_LE(model.totals().elastic_energy, 1e-12);
-    EXPECT_LE((model.totals().centre_of_mass - Vec3(0.6, -0.25, 0.45)).norm(), 1e-6);
+    EXPECT_LE(model.energetics().totals().elastic_energy, 1e-12);
+    EXPECT_LE((model.energetics().totals().centre_of_mass - Vec3(0.6, -0.25, 0.45)).norm(), 1e-6);
 }
 
 // Held in z only, on ice: it may slide and turn about z, and nothing makes it do so.
@@ -218,7 +223,7 @@ TEST(Statics, FindTheEquilibriumOfBodiesFreeToSlide) {
     Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     statics.step(model, 0.0, 1.0);
-    EXPECT_NEAR(model.reactions()[0].force.z(), 10.0, 1e-8);
+    EXPECT_NEAR(model.boundary().reactions()[0].force.z(), 10.0, 1e-8);
     EXPECT_GT(model.max_displacement(), 1e-4);
     s.gravity.x() = 0.1;
     Model sliding(mesh, table_of_one_law(soft_law), s);
@@ -237,7 +242,7 @@ TEST(Statics, FindAStableStateOfABucklingColumn) {
     Model model(mesh, table_of_one_law(soft_law), s);
     Statics statics;
     for (int i = 0; i < 5; ++i) statics.step(model, 0.2 * i, 0.2);
-    EXPECT_GT(model.min_volume_ratio(), 0.5);
+    EXPECT_GT(model.energetics().min_volume_ratio(), 0.5);
     double aside = 0.0;
     for (std::size_t n = 0; n < mesh.node_capacity(); ++n)
         aside = std::max(aside, (model.positions()[n] - mesh.rest_positions()[n]).tail<2>().norm());
@@ -295,16 +300,16 @@ TEST(LoadTangents, AreTheSymmetricPartOfThePressureDerivative) {
         found.K.setZero(static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(size));
         test::Random random(1);
         std::vector<Vec3> x = random_state(mesh, random, 0.1, 0.0).positions;
-        model.visit_outer_tangents(x, 0.0, found);
+        model.boundary().visit_tangents(x, 0.0, found);
         Eigen::MatrixXd expected(size, size);
         std::vector<Vec3> up(x.size()), down(x.size());
         for (std::size_t j = 0; j < size; ++j) {
             const double h = 0.1;  // forces are quadratic: central differences are exact
             auto& at = x[j / 3][static_cast<Eigen::Index>(j % 3)];
             at += h;
-            model.outer_forces_at(x, 0.0, up);
+            model.boundary().outer_forces_at(x, 0.0, model.workers(), up);
             at -= 2 * h;
-            model.outer_forces_at(x, 0.0, down);
+            model.boundary().outer_forces_at(x, 0.0, model.workers(), down);
             at += h;
             for (std::size_t i = 0; i < size; ++i)
                 expected(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =

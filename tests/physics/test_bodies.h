@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "incise/physics/body/model.h"
+#include "incise/physics/solve/explicit_step.h"
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_data.h"
 #include "incise/topology/mesh_edit.h"
@@ -130,9 +131,9 @@ BodyState random_state(const Mesh& mesh, test::Random& random, double shake, dou
 /// Moves the nodes of a state that constraints hold to where these want them.
 inline void put_on_constraints(const Model& model, double time, BodyState& state) {
     for (const NodeId n : model.fragments().nodes())
-        if (const auto* constraint_of = model.constraints().of_node(n.index()))
-            model.constraints().prescribe(*constraint_of, model.fragments(), n, time,
-                                          state.positions[n.index()]);
+        if (const auto* constraint_of = model.boundary().constraints().of_node(n.index()))
+            model.boundary().constraints().prescribe(*constraint_of, model.fragments(), n, time,
+                                                     state.positions[n.index()]);
 }
 
 inline void set_state(Model& model, const BodyState& state, double time = 0.0) {
@@ -149,7 +150,7 @@ inline void take_back(topology::Mesh& mesh, Model& model, const BodyEdit& edit) 
 
 inline void step(Model& model, double& time, double dt) {
     model.compute_forces(time);
-    model.integrate(time, dt);
+    ExplicitStep().move(model, time, dt);
     time += dt;
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "incise/physics/elements/viscous_kernel.h"
+#include "incise/physics/solve/explicit_step.h"
 #include "incise/topology/box_mesh.h"
 #include "tests/physics/test_bodies.h"
 #include "tests/physics/viscous_work.h"
@@ -136,17 +137,18 @@ TEST(Viscosity, RelaxesAfterASuddenStrain) {
                               1e-12 * elastic.elastic_forces()[n].norm());
                 EXPECT_LE((model.element_result(e).cauchy_stress - g * sudden).norm(),
                           1e-12 * sudden.norm());
-                model.integrate(i * dt, dt);
+                ExplicitStep().move(model, i * dt, dt);
                 model.compute_forces((i + 1) * dt);
             }
             // The long-time moduli, of which the elastic energy is.
-            for (int i = 0; i < 400; ++i) model.integrate(0.0, 1.0);
+            for (int i = 0; i < 400; ++i) ExplicitStep().move(model, 0.0, 1.0);
             model.compute_forces(0.0);
             const double share = long_time_share(series);
             EXPECT_LE((model.element_result(e).cauchy_stress - share * sudden).norm(),
                       1e-12 * sudden.norm());
-            EXPECT_NEAR(model.totals().elastic_energy, share * elastic.totals().elastic_energy,
-                        1e-12 * elastic.totals().elastic_energy);
+            EXPECT_NEAR(model.energetics().totals().elastic_energy,
+                        share * elastic.energetics().totals().elastic_energy,
+                        1e-12 * elastic.energetics().totals().elastic_energy);
             EXPECT_EQ(model.stable_step(), elastic.stable_step());
         }
 }
@@ -314,25 +316,25 @@ TEST(Viscosity, KeepsTheEnergyLedgerOfFreeVibration) {
     const auto ledger_error = [&](int num_steps) {
         Model model(mesh, table_of_one_material(HyperElasticLinks{soft_law, 0.4, two_terms}));
         set_state(model, start);
-        const Totals initial = model.totals();
+        const Totals initial = model.energetics().totals();
         double time = 0.0, largest = 0.0;
         const double dt = 3.0 / num_steps;
         EXPECT_LT(dt, 0.5 * model.stable_step());
         for (int i = 0; i < num_steps; ++i) {
             step(model, time, dt);
-            const Totals now = model.totals();
-            largest =
-                std::max(largest, std::abs(now.kinetic_energy + now.elastic_energy +
-                                           model.dissipated_energy() - initial.kinetic_energy));
+            const Totals now = model.energetics().totals();
+            largest = std::max(
+                largest, std::abs(now.kinetic_energy + now.elastic_energy +
+                                  model.energetics().dissipated_energy() - initial.kinetic_energy));
         }
-        const Totals end = model.totals();
+        const Totals end = model.energetics().totals();
         double scale = 0.0;
         for (std::size_t n = 0; n < start.velocities.size(); ++n)
             scale += model.masses()[n] * start.velocities[n].norm();
         EXPECT_LE((end.momentum - initial.momentum).norm(), 1e-12 * scale);
         EXPECT_LE((end.angular_momentum - initial.angular_momentum).norm(), 1e-12 * scale);
-        EXPECT_GT(model.dissipated_energy(), 0.5 * initial.kinetic_energy);
-        EXPECT_LT(model.dissipated_energy(), initial.kinetic_energy);
+        EXPECT_GT(model.energetics().dissipated_energy(), 0.5 * initial.kinetic_energy);
+        EXPECT_LT(model.energetics().dissipated_energy(), initial.kinetic_energy);
         return largest / initial.kinetic_energy;
     };
     const double coarse = ledger_error(500), middle = ledger_error(1000), fine = ledger_error(2000);
@@ -347,9 +349,9 @@ TEST(Viscosity, OfNoShareChangesNoBit) {
     Model elastic(mesh, table_of_one_law(soft_law));
     Model none(mesh, table_of_one_material(HyperElasticLinks{soft_law, 0.4, {}}));
     Model zero(mesh, table_of_one_material(HyperElasticLinks{soft_law, 0.4, {{0.0, 0.1}}}));
-    EXPECT_TRUE(none.history().is_empty());
-    EXPECT_TRUE(none.history().values().empty());
-    EXPECT_FALSE(zero.history().is_empty());
+    EXPECT_TRUE(none.state().history().is_empty());
+    EXPECT_TRUE(none.state().history().values().empty());
+    EXPECT_FALSE(zero.state().history().is_empty());
     test::Random random(35);
     const BodyState state = random_state(mesh, random, 0.03, 0.5);
     const double dt = 0.5 * elastic.stable_step();
@@ -360,8 +362,9 @@ TEST(Viscosity, OfNoShareChangesNoBit) {
     }
     EXPECT_EQ(state_of(none), state_of(elastic));
     EXPECT_EQ(state_of(zero), state_of(elastic));
-    EXPECT_EQ(zero.totals().elastic_energy, elastic.totals().elastic_energy);
-    EXPECT_EQ(zero.dissipated_energy(), 0.0);
+    EXPECT_EQ(zero.energetics().totals().elastic_energy,
+              elastic.energetics().totals().elastic_energy);
+    EXPECT_EQ(zero.energetics().dissipated_energy(), 0.0);
 }
 
 TEST(Viscosity, ForcesAreAFunctionOfPositionsAndHistory) {
@@ -380,7 +383,7 @@ TEST(Viscosity, ForcesAreAFunctionOfPositionsAndHistory) {
     EXPECT_TRUE(std::ranges::equal(model.elastic_forces(), forces));
     Model other(mesh, table);
     set_state(other, state_of(model));
-    other.set_history(model.history().values());
+    other.state().change().history.set_values(model.state().history().values());
     other.compute_forces(time);
     EXPECT_TRUE(std::ranges::equal(other.elastic_forces(), forces));
 }

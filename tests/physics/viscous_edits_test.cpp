@@ -49,7 +49,7 @@ struct BodyWithPast {
         return table;
     }
     Memory history() const {
-        return {model.history().values().begin(), model.history().values().end()};
+        return {model.state().history().values().begin(), model.state().history().values().end()};
     }
     std::vector<Vec3> forces() {
         model.compute_forces(time);
@@ -103,7 +103,7 @@ TEST(ViscousEdits, MatchFreshBodiesAndCanBeUndone) {
 
             Model fresh(body.mesh, body.model.fragments(), body.table);
             set_state(fresh, state_of(body.model));
-            fresh.set_history(body.model.history().values());
+            fresh.state().change().history.set_values(body.model.state().history().values());
             fresh.compute_forces(body.time);
             const double dt = 0.05 * std::min(body.model.stable_step(), 1.0);
             for (Model* model : {&body.model, &fresh}) {
@@ -114,7 +114,8 @@ TEST(ViscousEdits, MatchFreshBodiesAndCanBeUndone) {
             EXPECT_EQ(state_of(body.model), state_of(fresh));
             EXPECT_TRUE(std::ranges::equal(body.model.elastic_forces(), fresh.elastic_forces()));
             for (const ElementId e : living_elements(body.model.fragments()))
-                EXPECT_TRUE(std::ranges::equal(body.model.history().of(e), fresh.history().of(e)));
+                EXPECT_TRUE(std::ranges::equal(body.model.state().history().of(e),
+                                               fresh.state().history().of(e)));
         }
     }
 }

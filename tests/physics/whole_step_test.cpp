@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "incise/physics/solve/solved_step.h"
 #include "incise/topology/mesh_edit.h"
 #include "tests/physics/test_bodies.h"
 
@@ -81,15 +82,16 @@ Outcome outcome_of_steps(Model& model) {
     const double dt = 0.3 * model.stable_step();
     double time = 0.0;
     for (int i = 0; i < 5; ++i) step(model, time, dt);
-    Outcome outcome{state_of(model),
-                    {model.outer_forces().begin(), model.outer_forces().end()},
-                    {},
-                    {},
-                    model.external_work(),
-                    model.dissipated_energy()};
-    for (std::size_t i = 0; i < model.num_constraints(); ++i) {
-        outcome.reactions.push_back(model.reactions()[i].force);
-        outcome.moments.push_back(model.reactions()[i].torque);
+    Outcome outcome{
+        state_of(model),
+        {model.boundary().outer_forces().begin(), model.boundary().outer_forces().end()},
+        {},
+        {},
+        model.energetics().external_work(),
+        model.energetics().dissipated_energy()};
+    for (std::size_t i = 0; i < model.boundary().constraints().size(); ++i) {
+        outcome.reactions.push_back(model.boundary().reactions()[i].force);
+        outcome.moments.push_back(model.boundary().reactions()[i].torque);
     }
     return outcome;
 }
@@ -145,11 +147,11 @@ TEST(WholeStep, HasLoadsOfEditedBodiesBeforeTheirForces) {
     topology::MeshEdit edit(mesh);
     edit.remove(CellId(0));
     edited.apply(edited.mesh(), edit.commit());
-    edited.begin_step();
+    begin_solved_step(edited);
     const Model built(mesh, table_of_one_law(soft_law), held_moved_and_loaded(mesh));
     std::vector<Vec3> of_edited(mesh.node_capacity()), of_built(mesh.node_capacity());
-    edited.outer_forces_at(edited.positions(), 0.2, of_edited);
-    built.outer_forces_at(built.positions(), 0.2, of_built);
+    edited.boundary().outer_forces_at(edited.positions(), 0.2, edited.workers(), of_edited);
+    built.boundary().outer_forces_at(built.positions(), 0.2, built.workers(), of_built);
     EXPECT_EQ(of_edited, of_built);
 }
 

@@ -90,14 +90,15 @@ TEST_P(CutFrame, ReadAsAMeshIsTheBodyAtRest) {
     EXPECT_EQ(after.num_nodes(), before.num_nodes());
     // The order of sums differs with the ids.
     constexpr double rounding = 1e-12;
-    EXPECT_NEAR(read.model().rest_stable_step(), written.model().rest_stable_step(),
-                rounding * written.model().rest_stable_step());
-    EXPECT_NEAR(read.model().totals().mass, written.model().totals().mass,
-                rounding * written.model().totals().mass);
+    EXPECT_NEAR(read.model().structure().rest_stable_step(),
+                written.model().structure().rest_stable_step(),
+                rounding * written.model().structure().rest_stable_step());
+    EXPECT_NEAR(read.model().energetics().totals().mass, written.model().energetics().totals().mass,
+                rounding * written.model().energetics().totals().mass);
     for (const ElementId e : after.elements())
         for (const NodeId n : after.corners(e))
             EXPECT_EQ(read.model().positions()[n.index()], after.rest_position(n));
-    EXPECT_LT(read.model().totals().elastic_energy, 1e-20);
+    EXPECT_LT(read.model().energetics().totals().elastic_energy, 1e-20);
     run(read);
     EXPECT_EQ(read.warnings(), std::vector<std::string>{});
 
@@ -146,7 +147,7 @@ k2 = 0.5
     const FragmentMesh& fragments = read.model().fragments();
     ASSERT_GT(fragments.element_capacity(), read.mesh().element_capacity());
     for (const ElementId e : fragments.elements())
-        EXPECT_EQ(read.model().fibres()[e.index()], Vec3(0.6, 0.0, 0.8));
+        EXPECT_EQ(read.model().structure().fibres()[e.index()], Vec3(0.6, 0.0, 0.8));
 }
 
 TEST(FrameOfACutBody, HasTheMomentumOfItsPhysics) {

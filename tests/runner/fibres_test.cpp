@@ -62,7 +62,7 @@ TEST(FibredBody, IsStifferAlongItsFibresThanAcross) {
         Simulation simulation(folder.scenario(box_of_tissue + fibred_material +
                                               "fibre = " + direction + "\n" + pulled));
         run(simulation);
-        return simulation.model().reactions()[1].force.z();
+        return simulation.model().boundary().reactions()[1].force.z();
     };
     const double along = reaction("[0, 0, 3]"), across = reaction("[1, 0, 0]");
     EXPECT_GT(across, 0.0);
@@ -85,7 +85,7 @@ plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
         const auto c = static_cast<std::size_t>(mesh.label(CellId(i)));
         const Vec3 given(vectors_of(frame).data() + 3 * c);
-        EXPECT_LE((simulation.model().fibres()[i] - given.normalized()).norm(), 1e-15);
+        EXPECT_LE((simulation.model().structure().fibres()[i] - given.normalized()).norm(), 1e-15);
     }
     run(simulation);
     EXPECT_EQ(topology::components(mesh).count, 2);
@@ -105,17 +105,17 @@ plane = { point = [0, 0.047, 0.05], normal = [0.1, 1, 0.1] }
     const auto& fragments = simulation.model().fragments();
     for (const CellId e : mesh.elements())
         expected[location(mesh, e)] =
-            simulation.model().fibres()[fragments.fragment_of_cell(e).index()];
+            simulation.model().structure().fibres()[fragments.fragment_of_cell(e).index()];
     ASSERT_EQ(again.mesh().num_elements(), mesh.num_elements());
     const auto& read = again.model().fragments();
     for (const CellId e : again.mesh().elements())
-        EXPECT_EQ(again.model().fibres()[read.fragment_of_cell(e).index()],
+        EXPECT_EQ(again.model().structure().fibres()[read.fragment_of_cell(e).index()],
                   expected.at(location(again.mesh(), e)));
 }
 
 TEST(FibredBody, LeavesFramesOfOthersAlone) {
     Simulation simulation(scenario_of(soft_cube + dynamics(0.1)));
-    EXPECT_TRUE(simulation.model().fibres().empty());
+    EXPECT_TRUE(simulation.model().structure().fibres().empty());
     for (const auto& field : build_frame(simulation.model(), 0.0, {}).cell_fields)
         EXPECT_NE(field.name, "fibre");
 }

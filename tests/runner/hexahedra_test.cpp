@@ -68,7 +68,7 @@ path = [{ time = 0, at = [0.05, 0.05, 0.13] }, { time = 0.1, at = [0.05, 0.05, 0
     EXPECT_GT(removed, 4u);
     EXPECT_GE(opened, 30u);
     EXPECT_EQ(split, 0u);
-    EXPECT_GT(simulation.model().min_volume_ratio(), 0.5);
+    EXPECT_GT(simulation.model().energetics().min_volume_ratio(), 0.5);
 }
 
 TEST(HexahedralBody, IsNotSplit) {

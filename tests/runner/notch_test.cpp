@@ -171,7 +171,7 @@ edge = [[0, )"
 }
 
 double pulling_force(const Simulation& simulation) {
-    return simulation.model().reactions()[1].force.z();
+    return simulation.model().boundary().reactions()[1].force.z();
 }
 
 /// Sum of the net forces on nodes between the ends, over the pulling force: no less than what the

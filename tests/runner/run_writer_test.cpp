@@ -288,8 +288,8 @@ TEST_F(RunFiles, FramesHoldTheState) {
         ids.insert(values<std::int64_t>(points, "node_id")[i]);
     }
     EXPECT_EQ(ids.size(), nodes.size());  // no two alike
-    EXPECT_NEAR(mass, model.totals().mass, 1e-12);
-    EXPECT_NEAR((momentum - model.totals().momentum).norm(), 0.0, 1e-6);
+    EXPECT_NEAR(mass, model.energetics().totals().mass, 1e-12);
+    EXPECT_NEAR((momentum - model.energetics().totals().momentum).norm(), 0.0, 1e-6);
 
     const auto& cells = frame.cell_fields;
     double energy = 0.0;
@@ -309,7 +309,8 @@ TEST_F(RunFiles, FramesHoldTheState) {
                       3 * (s(0, 1) * s(0, 1) + s(1, 2) * s(1, 2) + s(2, 0) * s(2, 0)));
         EXPECT_NEAR(values<float>(cells, "von_mises")[i], expected, 1e-4 * (1 + expected));
     }
-    EXPECT_NEAR(energy, model.totals().elastic_energy, 1e-5 * model.totals().elastic_energy);
+    EXPECT_NEAR(energy, model.energetics().totals().elastic_energy,
+                1e-5 * model.energetics().totals().elastic_energy);
 }
 
 TEST_F(RunFiles, FramesReadAsTheCutBodyAtRest) {

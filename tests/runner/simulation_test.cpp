@@ -172,7 +172,7 @@ TEST(Simulation, AutomaticStepsFollowEditsBelowTheBound) {
 
 TEST(Simulation, RefusesAFixedStepAboveTheBound) {
     const Scenario automatic = scenario_of(soft_cube + dynamics(0.1, "safety = 1"));
-    const double stable = Simulation(automatic).model().rest_stable_step();
+    const double stable = Simulation(automatic).model().structure().rest_stable_step();
     Scenario scenario = automatic;
     scenario.dynamics.time_step = stable;
     EXPECT_NO_THROW(Simulation{scenario});
@@ -226,9 +226,9 @@ TEST(Simulation, RefusesFixedStepsThatEditsMakeTooLarge) {
         Scenario automatic = scenario;
         automatic.dynamics.time_step.reset();
         Simulation simulation(automatic);
-        before = simulation.model().rest_stable_step();
+        before = simulation.model().structure().rest_stable_step();
         run(simulation);
-        after = simulation.model().rest_stable_step();
+        after = simulation.model().structure().rest_stable_step();
     }
     ASSERT_LT(after, 0.8 * before);
     scenario.dynamics.time_step = 0.5 * (before + after);
@@ -419,7 +419,7 @@ TEST(Ledger, AccountsForEveryEdit) {
     EXPECT_GT(removed, 3u);
     EXPECT_GT(opened, 5u);
     EXPECT_GT(num_in_same_step, 0u);
-    EXPECT_NEAR(mass_removed + simulation.model().totals().mass, 1.0, 1e-12);
+    EXPECT_NEAR(mass_removed + simulation.model().energetics().totals().mass, 1.0, 1e-12);
     EXPECT_GE(edits.back().after.components, 2);
 }
 
@@ -477,7 +477,7 @@ path = [{ time = 0.05, at = [0, 0, 0] }, { time = 0.06, at = [0, 0, 0] }]
     EXPECT_EQ(recorder.edits.size(), 1u);
     EXPECT_EQ(recorder.frame_times.size(), 11u);
     EXPECT_LE(simulation.ledger().mass_error(), 1e-12);
-    EXPECT_EQ(simulation.model().totals().mass, 0.0);
+    EXPECT_EQ(simulation.model().energetics().totals().mass, 0.0);
 }
 
 TEST(Simulation, StopsWhenTheMotionBlowsUp) {

@@ -45,17 +45,19 @@ TEST(StaticRun, EndsEachLoadStepInEquilibrium) {
         double largest = 0.0, net = 0.0;
         for (const NodeId node : model.fragments().nodes()) {
             const std::size_t n = node.index();
-            const Vec3 &inner = model.elastic_forces()[n], &outer = model.outer_forces()[n];
+            const Vec3 &inner = model.elastic_forces()[n],
+                       &outer = model.boundary().outer_forces()[n];
             largest = std::max(largest, inner.norm());
-            if (!model.constraints().of_node(n)) net = std::max(net, (inner + outer).norm());
+            if (!model.boundary().constraints().of_node(n))
+                net = std::max(net, (inner + outer).norm());
         }
         EXPECT_LE(net, 1e-9 * largest) << "at load time " << simulation.time();
-        EXPECT_EQ(model.totals().kinetic_energy, 0.0);
+        EXPECT_EQ(model.energetics().totals().kinetic_energy, 0.0);
     }
     // Two load steps for each frame make ten.
     EXPECT_EQ(simulation.num_steps(), 10u);
     EXPECT_GE(simulation.edits().size(), 2u);
-    EXPECT_GT(simulation.model().dissipated_energy(), 0.0);  // the cut lets go
+    EXPECT_GT(simulation.model().energetics().dissipated_energy(), 0.0);  // the cut lets go
     EXPECT_LT(simulation.ledger().energy_error(), 0.01);
     EXPECT_EQ(end_of(text), end_of(text));  // to the bit
 }
@@ -122,12 +124,12 @@ move = [{ time = 0, by = [0, 0, 0] }, { time = 0.1, by = [0, 0, -)" +
     };
     Simulation gently(scenario_of(pressed("0.03")));
     run(gently);
-    EXPECT_GT(gently.model().min_volume_ratio(), 0.0);
+    EXPECT_GT(gently.model().energetics().min_volume_ratio(), 0.0);
     EXPECT_TRUE(gently.warnings().empty());
 
     Simulation through(scenario_of(pressed("0.12")));
     run(through);
-    ASSERT_LE(through.model().min_volume_ratio(), 0.0);
+    ASSERT_LE(through.model().energetics().min_volume_ratio(), 0.0);
     ASSERT_FALSE(through.warnings().empty());
     EXPECT_NE(through.warnings().back().find("flat or inverted"), std::string::npos);
 }
@@ -165,7 +167,7 @@ end_time = 1
     }
     Simulation simulation(scenario_of(text.str()));
     run(simulation);
-    EXPECT_GT(simulation.model().min_volume_ratio(), 0.3);
+    EXPECT_GT(simulation.model().energetics().min_volume_ratio(), 0.3);
     ASSERT_FALSE(simulation.warnings().empty());
     EXPECT_NE(simulation.warnings().back().find("the body is wound up: round "), std::string::npos)
         << simulation.warnings().back();
@@ -208,7 +210,7 @@ TEST(ImplicitRun, CutsInStepsThatAreLong) {
     EXPECT_GE(simulation.edits().size(), 2u);
     EXPECT_LT(simulation.ledger().mass_error(), 1e-12);
     EXPECT_LT(simulation.ledger().energy_error(), 1e-8);
-    EXPECT_GT(simulation.model().min_volume_ratio(), 0.3);
+    EXPECT_GT(simulation.model().energetics().min_volume_ratio(), 0.3);
     EXPECT_EQ(end_of(text), end_of(text));  // to the bit
 }
 

@@ -156,8 +156,9 @@ poisson = 0.4
         EXPECT_EQ(bits_of(one.positions()), bits_of(other.positions()));
         EXPECT_EQ(bits_of(one.velocities()), bits_of(other.velocities()));
         EXPECT_EQ(bits_of(one.elastic_forces()), bits_of(other.elastic_forces()));
-        EXPECT_EQ(bits_of(one.history().values()), bits_of(other.history().values()));
-        const physics::Totals a = one.totals(), b = other.totals();
+        EXPECT_EQ(bits_of(one.state().history().values()),
+                  bits_of(other.state().history().values()));
+        const physics::Totals a = one.energetics().totals(), b = other.energetics().totals();
         EXPECT_EQ(a.mass, b.mass);
         EXPECT_EQ(a.rest_volume, b.rest_volume);
         EXPECT_EQ(a.kinetic_energy, b.kinetic_energy);
@@ -166,9 +167,9 @@ poisson = 0.4
         EXPECT_EQ(a.momentum, b.momentum);
         EXPECT_EQ(a.angular_momentum, b.angular_momentum);
         EXPECT_EQ(a.centre_of_mass, b.centre_of_mass);
-        EXPECT_EQ(one.min_volume_ratio(), other.min_volume_ratio());
-        EXPECT_EQ(one.external_work(), other.external_work());
-        EXPECT_EQ(one.dissipated_energy(), other.dissipated_energy());
+        EXPECT_EQ(one.energetics().min_volume_ratio(), other.energetics().min_volume_ratio());
+        EXPECT_EQ(one.energetics().external_work(), other.energetics().external_work());
+        EXPECT_EQ(one.energetics().dissipated_energy(), other.energetics().dissipated_energy());
     }
 }
 

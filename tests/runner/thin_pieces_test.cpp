@@ -50,7 +50,8 @@ TEST(Needle, TakesTheEnergyOfUniaxialStrain) {
     const double lambda = 1e4 * 0.3 / (1.3 * 0.4), mu = 1e4 / 2.6, strain = 1e-4;
     const double volume = 0.01 * 1e-5 * 1e-5 / 6.0;
     const double energy = (0.5 * lambda + mu) * strain * strain * volume;
-    EXPECT_NEAR(simulation.model().elastic_energy(), energy, 1e-3 * energy);  // of second order
+    EXPECT_NEAR(simulation.model().energetics().elastic_energy(), energy,
+                1e-3 * energy);  // of second order
 }
 
 TEST(Needle, StaysWhereAllItsNodesAreHeld) {

@@ -124,7 +124,8 @@ fibre_array = "fibre"
         const auto c = static_cast<std::size_t>(mesh.label(e));
         EXPECT_EQ(mesh.region(e), frame.mesh.regions[c]);
         EXPECT_LE(
-            (simulation.model().fibres()[i] - Vec3(fibres.data() + 3 * c).normalized()).norm(),
+            (simulation.model().structure().fibres()[i] - Vec3(fibres.data() + 3 * c).normalized())
+                .norm(),
             1e-15);
     }
 }

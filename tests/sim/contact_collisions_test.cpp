@@ -75,7 +75,7 @@ TEST(ContactCollisions, EqualBarsCutFromOneSwapVelocities) {
         (velocity(right) - early) * bar_mass / (0.5 * contact_time()) / bar_area;
     run_to(1.5);
     EXPECT_EQ(world.report().contact.num_points, 0u);
-    EXPECT_NEAR(world.model().totals().momentum.x(), bar_mass * bar_speed,
+    EXPECT_NEAR(world.model().energetics().totals().momentum.x(), bar_mass * bar_speed,
                 1e-13 * bar_mass * bar_speed);
     expect_answer("C10 equal bars: velocity of the other one, m/s", velocity(right), bar_speed,
                   bar_tolerance);
@@ -170,7 +170,7 @@ double loss_of_a_collision(double friction) {
     run_until(world, 0.02);
     throw_halves({0.1, 0.05, -0.3}, {-0.05, 0, 0.2});
     world.step(dt);
-    const physics::Totals before = world.model().totals();
+    const physics::Totals before = world.model().energetics().totals();
     const double begin = test::present_energy(world.model(), dt);
     const double booked = world.report().contact.dissipation;
     double scale = 0.0;
@@ -183,7 +183,7 @@ double loss_of_a_collision(double friction) {
         num_points = std::max(num_points, world.report().contact.num_points);
         most = std::max(most, test::present_energy(world.model(), dt));
     }
-    const physics::Totals after = world.model().totals();
+    const physics::Totals after = world.model().energetics().totals();
     EXPECT_GT(num_points, 10u);
     EXPECT_EQ(world.report().contact.num_points, 0u);
     EXPECT_LE((after.momentum - before.momentum).norm(), 1e-13 * scale);

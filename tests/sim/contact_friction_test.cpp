@@ -155,7 +155,7 @@ double push_up_a_rigid_slope(double friction) {
         {"slope", cutting::Probe{cutting::HalfSpace{.normal = turn * Vec3::UnitZ()}, friction}});
     world.place_tool(slope, Pose());
     push_along_x(world, 0.01, [&](const Vec3& x) { return (turn.inverse() * x).x() < 1e-9; });
-    return steady_push(world, 0, world.model().totals().mass);
+    return steady_push(world, 0, world.model().energetics().totals().mass);
 }
 
 /// The same for a wedge and a block that are cut from one body.

@@ -285,7 +285,7 @@ TEST(ContactPatch, OfAWedgeFineAtItsEdgeIsNone) {
         ASSERT_EQ(world.report().contact.num_points, 0u);
     }
     EXPECT_EQ(world.report().contact.max_penetration, 0.0);
-    EXPECT_LT(world.model().totals().kinetic_energy, 1e-20);  // of rounding
+    EXPECT_LT(world.model().energetics().totals().kinetic_energy, 1e-20);  // of rounding
 }
 
 }  // namespace

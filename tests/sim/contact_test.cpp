@@ -258,7 +258,7 @@ TEST(Contact, BesideAMovingLidTakesEnergyAndGivesNone) {
         work += world.reaction(world.constraints()[1]).force.z() * -pressed_by / pressed_in * dt;
     }
     EXPECT_GT(work, 1e-4);
-    EXPECT_NEAR(world.model().external_work(), work, 0.02 * work);
+    EXPECT_NEAR(world.model().energetics().external_work(), work, 0.02 * work);
     EXPECT_GT(world.report().contact.dissipation, -0.005 * work);
     EXPECT_LT(world.report().contact.dissipation, 0.1 * work);
 }

@@ -12,6 +12,7 @@
 
 #include "incise/cutting/cutter.h"
 #include "incise/physics/body/motion_failure.h"
+#include "incise/physics/solve/explicit_step.h"
 #include "incise/sim/world.h"
 #include "incise/topology/box_mesh.h"
 #include "support/mesh_families.h"
@@ -125,10 +126,10 @@ inline std::optional<std::string> failure_at_rest_steps(StrainedCut c, double sa
     bool was_cut = false;
     try {
         for (double time = 0.0; time < StrainedCut::end_at;) {
-            const double dt = safety * model.rest_stable_step();
+            const double dt = safety * model.structure().rest_stable_step();
             const bool is_time = !was_cut && time >= StrainedCut::cut_at;
-            if (is_time && c.is_released) model.remove_constraint(1);
-            model.integrate(time, dt);
+            if (is_time && c.is_released) model.boundary().remove_constraint(1);
+            physics::ExplicitStep().move(model, time, dt);
             time += dt;
             cutter.follow_motion(mesh, model.mesh_positions());
             if (is_time) {

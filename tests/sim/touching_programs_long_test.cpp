@@ -42,13 +42,13 @@ TEST_P(TouchingPrograms, KeepMomentumAndTakeEnergyFromToolsOnly) {
         double scale = 1e-12, energy_scale = 0.0, rise = 0.0;
         int deep = 0, longest = 0;  // steps with a deep overlap
         for (int i = 0; i < TouchingProgram::num_steps; ++i) {
-            const Vec3 before = world.model().totals().momentum;
+            const Vec3 before = world.model().energetics().totals().momentum;
             const StepReport& report = program.step(i);
             Vec3 impulse = Vec3::Zero();
             for (const ToolState& tool : report.tools)
                 if (exerts(world.tool(tool.tool).shape))
                     impulse -= (report.to - report.from) * tool.force;
-            const Vec3 error = world.model().totals().momentum - before - impulse;
+            const Vec3 error = world.model().energetics().totals().momentum - before - impulse;
             scale = std::max(scale, speed_of(world));
             ASSERT_TRUE(std::isfinite(scale)) << "step " << i;
             ASSERT_LE(error.norm(), 1e-13 * scale) << "step " << i;

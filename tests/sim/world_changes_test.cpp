@@ -58,8 +58,8 @@ TEST(WorldChanges, AMaterialGivesTheForcesOfABodyThatIsMadeOfIt) {
                 ASSERT_EQ(model.elastic_forces()[n.index()], made.elastic_forces()[n.index()]);
                 ASSERT_EQ(model.masses()[n.index()], made.masses()[n.index()]);
             }
-            EXPECT_EQ(model.rest_stable_step(), made.rest_stable_step());
-            EXPECT_EQ(model.elastic_energy(), made.elastic_energy());
+            EXPECT_EQ(model.structure().rest_stable_step(), made.structure().rest_stable_step());
+            EXPECT_EQ(model.energetics().elastic_energy(), made.energetics().elastic_energy());
             EXPECT_LE(world.stable_step(), world.rest_stable_step());
         }
 }
@@ -69,11 +69,13 @@ TEST(WorldChanges, TheJumpOfElasticEnergyIsExternalWork) {
         SCOPED_TRACE(name);
         WorldDef def = body();
         World world = moved_world(body(), false);
-        const double work = world.model().external_work(), elastic = world.model().elastic_energy();
+        const double work = world.model().energetics().external_work(),
+                     elastic = world.model().energetics().elastic_energy();
         world.set_material(stiffer(def.materials[0]));
-        const double jump = world.model().elastic_energy() - elastic;
+        const double jump = world.model().energetics().elastic_energy() - elastic;
         EXPECT_GT(jump, 0.1 * elastic);
-        EXPECT_NEAR(world.model().external_work() - work, jump, 1e-12 * std::abs(work));
+        EXPECT_NEAR(world.model().energetics().external_work() - work, jump,
+                    1e-12 * std::abs(work));
         EXPECT_EQ(world.ledger().mass_error(), 0.0);
     }
 }
@@ -91,8 +93,8 @@ TEST(WorldChanges, TheSameMaterialChangesNothing) {
         }
         for (const VertexId n : world.mesh().nodes())
             ASSERT_EQ(world.positions()[n.index()], other.positions()[n.index()]);
-        EXPECT_TRUE(
-            std::ranges::equal(world.model().history().values(), other.model().history().values()));
+        EXPECT_TRUE(std::ranges::equal(world.model().state().history().values(),
+                                       other.model().state().history().values()));
     }
 }
 
@@ -103,14 +105,14 @@ TEST(WorldChanges, ViscosityComesAndGoes) {
     std::get<physics::HyperElasticLinks>(viscous.method).prony = {{0.4, 0.05}};
     World world = held(World(soft_body()));
     run_until(world, 0.02);
-    EXPECT_TRUE(world.model().history().is_empty());
+    EXPECT_TRUE(world.model().state().history().is_empty());
     world.set_material(viscous);
-    const double long_time = world.model().elastic_energy();
-    EXPECT_FALSE(world.model().history().is_empty());
+    const double long_time = world.model().energetics().elastic_energy();
+    EXPECT_FALSE(world.model().state().history().is_empty());
     run_until(world, 0.04);
     world.set_material(def.materials[0]);
-    EXPECT_TRUE(world.model().history().is_empty());
-    EXPECT_GT(world.model().elastic_energy(), 0.0);
+    EXPECT_TRUE(world.model().state().history().is_empty());
+    EXPECT_GT(world.model().energetics().elastic_energy(), 0.0);
     EXPECT_GT(long_time, 0.0);
     run_until(world, 0.05);
     EXPECT_LT(world.ledger().energy_error(), 0.02);
@@ -139,16 +141,16 @@ TEST(WorldChanges, ARegionAloneGetsAMaterial) {
     world.set_material(stiffer(material), regions);
     EXPECT_EQ(stress_in(0), first);
     EXPECT_NE(stress_in(1), second);
-    EXPECT_EQ(world.model().elements().materials().materials.size(), 2u);
+    EXPECT_EQ(world.model().structure().elements().materials().materials.size(), 2u);
     // Materials that no region has are forgotten.
     world.set_material(material);
-    EXPECT_EQ(world.model().elements().materials().materials.size(), 1u);
+    EXPECT_EQ(world.model().structure().elements().materials().materials.size(), 1u);
     EXPECT_EQ(stress_in(1), second);
 }
 
 TEST(WorldChanges, FibresComeWithTheirDirection) {
     World world = held_world();
-    const physics::Material plain = world.model().elements().materials().materials[0];
+    const physics::Material plain = world.model().structure().elements().materials().materials[0];
     run_until(world, 0.01);
     const physics::Material fibrous{
         1000.0, physics::HyperElasticLinks{physics::HolzapfelGasserOgden{
@@ -160,10 +162,10 @@ TEST(WorldChanges, FibresComeWithTheirDirection) {
     const UndoPoint before = world.undo_point();
     const std::string bytes = world.save();
     world.set_material(fibrous, {}, Vec3::UnitZ());
-    EXPECT_FALSE(world.model().fibres().empty());
+    EXPECT_FALSE(world.model().structure().fibres().empty());
     run_until(world, 0.02, cut_along(world, {0.05, 0.05, 0.05}, {1, 0.2, 0.1}));
     world.set_material(plain);
-    EXPECT_TRUE(world.model().fibres().empty());
+    EXPECT_TRUE(world.model().structure().fibres().empty());
     world.undo(before);
     EXPECT_TRUE(world.save() == bytes);
 }
@@ -270,7 +272,7 @@ TEST(WorldChanges, AreTakenBackByUndo) {
 // Without edits between them, both of two moments can be gone back to from the other.
 TEST(WorldChanges, AMomentBeforeAndOneAfterAreBothGoneBackTo) {
     World world = held_world();
-    const physics::Material plain = world.model().elements().materials().materials[0];
+    const physics::Material plain = world.model().structure().elements().materials().materials[0];
     run_until(world, 0.01);
     const UndoPoint before = world.undo_point();
     const std::string bytes_before = world.save();
@@ -316,7 +318,7 @@ TEST(WorldChanges, AMaterialThatComesBackGivesTheStateOfBefore) {
 // The stable step follows at once, and does not fall back later to what it was.
 TEST(WorldChanges, SofterTissueTakesLongerStepsFromThenOn) {
     World world = held_world();
-    const physics::Material plain = world.model().elements().materials().materials[0];
+    const physics::Material plain = world.model().structure().elements().materials().materials[0];
     physics::Material soft = plain;
     soft.method = physics::HyperElasticLinks{physics::NeoHookean{2.0, 6.0}};
     world.set_gravity(Vec3::Zero());

@@ -286,7 +286,7 @@ TEST(World, LoadsActFromTheirFirstStep) {
     const double dt = 0.5 * world.stable_step(), mass = 1.0;  // 1000 kg/m3 in a litre
     const auto all = nodes_where(world, [](const Vec3&) { return true; });
     const double share = 1.0 / static_cast<double>(all.size());
-    const auto momentum = [&] { return world.model().totals().momentum.x(); };
+    const auto momentum = [&] { return world.model().energetics().totals().momentum.x(); };
     world.step(dt);
     EXPECT_NEAR(momentum(), 0.0, 1e-20);
     const LoadId load = world.add_load(

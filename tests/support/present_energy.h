@@ -13,7 +13,7 @@ namespace incise::test {
 /// @param dt  the last step, s
 /// @pre  the forces of the state are computed
 inline double present_energy(const physics::Model& model, double dt) {
-    double energy = model.totals().elastic_energy;
+    double energy = model.energetics().totals().elastic_energy;
     for (std::size_t n = 0; n < model.masses().size(); ++n) {
         const double mass = model.masses()[n];
         if (mass == 0.0) continue;

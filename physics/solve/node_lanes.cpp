@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/body/node_lanes.h"
+#include "incise/physics/solve/node_lanes.h"
 
 namespace incise::physics {
 

@@ -1,11 +1,9 @@
-// The totals of a model. Ranges of nodes and blocks of elements are summed in a fixed order, so
-// that the results are the same bit for bit with any number of threads.
+// The sums over a body. Ranges of nodes and blocks of elements are summed in a fixed order, so that
+// the results are the same bit for bit with any number of threads.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include <algorithm>
-#include <limits>
+#include "incise/physics/body/energetics.h"
 
 #include "incise/base/sum.h"
-#include "incise/physics/body/model.h"
 
 namespace incise::physics {
 
@@ -18,28 +16,32 @@ Vec3 vector_of(const NodeSums& sums, std::size_t first) {
 
 }  // namespace
 
-NodeSums Model::sums_of(NodeRange range) const {
+NodeSums Energetics::sums_of(NodeRange range) const {
+    const auto masses = structure_.masses();
+    const auto positions = state_.positions(), velocities = state_.velocities();
+    const Vec3& gravity = boundary_.loads().gravity();
     NodeSums sums;
     for (std::size_t n = range.begin; n < range.end; ++n) {
-        const double m = masses_[n];
+        const double m = masses[n];
         if (m == 0.0) continue;  // dead
-        const Vec3 &x = positions()[n], &v = velocities()[n];
+        const Vec3 &x = positions[n], &v = velocities[n];
         const Vec3 p = m * v, l = x.cross(p);
         using Pair = NodeSums::Pair;  // in the order of NodeSum
-        sums += NodeSums::Terms{Pair{m, 0.5 * p.dot(v)}, Pair{-m * loads_.gravity().dot(x), p[0]},
+        sums += NodeSums::Terms{Pair{m, 0.5 * p.dot(v)}, Pair{-m * gravity.dot(x), p[0]},
                                 Pair{p[1], p[2]},        Pair{l[0], l[1]},
                                 Pair{l[2], m * x[0]},    Pair{m * x[1], m * x[2]}};
     }
     return sums;
 }
 
-Totals Model::totals() const {
-    const NodeSums sums = node_sums_.value(state_.version(), masses_.size(), workers_,
-                                           [&](NodeRange range) { return sums_of(range); });
+Totals Energetics::totals() const {
+    const NodeSums sums =
+        node_sums_.value(state_.version() + boundary_.version(), structure_.masses().size(),
+                         workers_, [&](NodeRange range) { return sums_of(range); });
     Totals t;
     t.mass = sums[NodeSum::mass].value();
     Sum rest_volume;
-    elements_.add_up_blocks(
+    structure_.elements().add_up_blocks(
         workers_, [](const ElementBlock& block) { return block.rest_volume(); },
         [&](const Sum& of_block) { rest_volume += of_block; });
     t.rest_volume = rest_volume.value();
@@ -52,25 +54,19 @@ Totals Model::totals() const {
     return t;
 }
 
-double Model::elastic_energy() const {
-    return elements_.totals(state_, workers_).elastic_energy.value();
+double Energetics::elastic_energy() const {
+    return structure_.elements().totals(state_, workers_).elastic_energy.value();
 }
 
-double Model::stiffness_energy() const {
-    double sum = 0.0;
-    elements_.for_each_block([&](const ElementBlock& block) { sum += block.stiffness_energy(); });
-    return sum;
+double Energetics::min_volume_ratio() const {
+    return structure_.elements().totals(state_, workers_).min_volume_ratio;
 }
 
-double Model::min_volume_ratio() const {
-    return elements_.totals(state_, workers_).min_volume_ratio;
-}
-
-double Model::volume_change() const {
+double Energetics::volume_change() const {
     double now = 0.0, at_rest = 0.0;
-    elements_.for_each_block([&](const ElementBlock& block) {
+    structure_.elements().for_each_block([&](const ElementBlock& block) {
         for (const ElementId e : block.elements()) {
-            const ElementResult result = block.result(e, positions(), history());
+            const ElementResult result = block.result(e, state_.positions(), state_.history());
             now += result.volume * result.volume_ratio;
             at_rest += result.volume;
         }
@@ -78,12 +74,9 @@ double Model::volume_change() const {
     return now / at_rest - 1.0;
 }
 
-double Model::max_displacement() const {
-    double largest = 0.0;
-    const auto x = mesh_positions();
-    for (const VertexId n : mesh_.nodes())
-        largest = std::max(largest, (x[n.index()] - mesh_.rest_position(n)).norm());
-    return largest;
+void Energetics::forget(std::span<const NodeId> nodes) {
+    node_sums_.resize(structure_.masses().size());
+    for (const NodeId n : nodes) node_sums_.forget(n.index());
 }
 
 }  // namespace incise::physics

@@ -1,6 +1,6 @@
 // The explicit step of nodes without constraints, several at a time in SIMD lanes. Positions and
-// velocities equal those of Model::move_node bit for bit; sums are added in another order.
-// SPDX-License-Identifier: LGPL-3.0-or-later
+// velocities equal those of the single nodes of ExplicitStep bit for bit; sums are added in another
+// order. SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <algorithm>
