@@ -1,6 +1,5 @@
 // The changes that one edit made to a mesh, as a value that can be compared, printed and inverted.
-// Replay, undo, logs, checkpoints and followers of the mesh need neither the combinatorial map nor
-// its callbacks.
+// Replay, undo, logs, checkpoints and followers of the mesh need nothing else.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 

@@ -136,12 +136,10 @@ void Mesh::truncate(std::size_t node_capacity, std::size_t element_capacity) {
     corners_.resize(corner_begin_.back());
     neighbors_.resize(face_begin_.back());
     inside_faces_.resize(element_capacity);
-    map_.truncate(node_capacity, element_capacity);
 }
 
-void Mesh::glue(FaceId a, FaceId b, int shift) {
+void Mesh::glue(FaceId a, FaceId b) {
     assert(!neighbor(a).is_valid() && !neighbor(b).is_valid());
-    map_.glue(a, b, shift);
     set_neighbor(a, b);
     set_neighbor(b, a);
     for (const FaceId f : {a, b})
@@ -151,7 +149,6 @@ void Mesh::glue(FaceId a, FaceId b, int shift) {
 void Mesh::unglue(FaceId a) {
     const FaceId b = neighbor(a);
     assert(b.is_valid());
-    map_.unglue(a);
     set_neighbor(a, {});
     set_neighbor(b, {});
 }

@@ -9,7 +9,6 @@
 
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
-#include "incise/topology/cell_map.h"
 #include "incise/topology/living_ids.h"
 #include "incise/topology/mesh_data.h"
 
@@ -19,9 +18,8 @@ struct BuiltMesh;
 
 /// A volume mesh: elements over nodes, as flat arrays.
 ///
-/// A combinatorial map stores the same topology a second time. Construction, edits and replays
-/// write both records, row by row. Nothing is copied from the map to the arrays; validate()
-/// compares the two.
+/// The rows of corners and neighbours are a combinatorial map: each dart is a position in a face of
+/// a cell, and its links follow from the rows. to_linear_cell_complex() writes them as CGAL's.
 ///
 /// Ids are dense array indices. Their order follows a Hilbert curve, which keeps neighbours close.
 /// A body with carriers keeps the order of its source, as it was cut in this order: see build().
@@ -135,10 +133,6 @@ class Mesh {
     /// Returns the number of points in the source.
     std::size_t num_source_points() const { return node_labels_.size(); }
 
-    /// Returns the combinatorial map, for validate(). A run reads the map only to check the mesh of
-    /// a checkpoint.
-    const CellMap& map() const { return map_; }
-
   private:
     friend class MeshArchive;
     friend class MeshEdit;
@@ -148,9 +142,8 @@ class Mesh {
 
     void append_element_row(CellKind kind, int region, std::span<const VertexId> corners);
     void truncate(std::size_t node_capacity, std::size_t element_capacity);
-    /// Joins two faces in the map and in the arrays, which makes them inside for ever: see
-    /// was_inside(). The corner at position 0 of `a` meets the corner at position `shift` of `b`.
-    void glue(FaceId a, FaceId b, int shift);
+    /// Joins two faces, which makes them inside for ever: see was_inside().
+    void glue(FaceId a, FaceId b);
     void unglue(FaceId a);
     void set_neighbor(FaceId f, FaceId other) {
         neighbors_[face_begin_[f.cell.index()] + static_cast<std::size_t>(f.face)] = other;
@@ -174,8 +167,6 @@ class Mesh {
     std::vector<VertexId> label_nodes_;  ///< by label; the first node if pinched
     std::vector<std::pair<std::int64_t, VertexId>> pinched_;  ///< label, further node; sorted
     Carriers source_carriers_;
-
-    CellMap map_;
 };
 
 /// A new mesh, with warnings about its source.

@@ -8,8 +8,8 @@
 
 namespace incise::topology {
 
-/// The list of members that an archive of a mesh contains. Row offsets and the combinatorial map
-/// are recomputed from these members.
+/// The list of members that an archive of a mesh contains. Row offsets are recomputed from these
+/// members.
 class MeshArchive {
   public:
     static void list(auto& ar, auto& m) {
@@ -23,7 +23,6 @@ class MeshArchive {
         list(ar, mesh);
         MeshArchive(mesh).restore_rows();
         MeshArchive(mesh).require_ids();
-        MeshArchive(mesh).restore_map();
         if (const auto faults = validate(mesh); !faults.empty())
             throw InputError("it is no sound mesh: " + faults.front());
         return mesh;
@@ -79,32 +78,6 @@ class MeshArchive {
                     std::ranges::all_of(mesh_.pinched_,
                                         [&](const auto& row) { return is_node(row.second); }),
                 "a node or an element that it names is not there");
-    }
-
-    void restore_map() {
-        for (std::size_t i = 0; i < mesh_.element_capacity(); ++i) {
-            const CellId e(i);
-            mesh_.map_.add_element(e, mesh_.kind(e), mesh_.corners(e), mesh_.rest_positions_);
-            if (!mesh_.is_alive(e)) mesh_.map_.remove_element(e);
-        }
-        for (const CellId e : mesh_.elements())
-            for (int f = 0; f < mesh_.num_faces(e); ++f) {
-                const FaceId face{e, f}, other = mesh_.neighbor(face);
-                if (!other.is_valid()) continue;
-                require(
-                    mesh_.is_alive(other.cell) && other.cell != e && mesh_.neighbor(other) == face,
-                    "neighbours do not know each other");
-                const int shift = matching_shift(mesh_, face, other);
-                require(shift >= 0, "neighbours disagree on their face");
-                if (face < other) mesh_.map_.glue(face, other, shift);
-            }
-        // Adding and removing dead elements has changed the darts that CGAL stores for vertices.
-        for (const VertexId n : mesh_.nodes()) {
-            const CellId incident = mesh_.incident_element(n);
-            const int corner = mesh_.is_alive(incident) ? mesh_.corner_of(incident, n) : -1;
-            require(corner >= 0, "a node has no element");
-            mesh_.map_.set_incident_element(n, incident, corner);
-        }
     }
 
     Mesh& mesh_;

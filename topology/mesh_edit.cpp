@@ -36,13 +36,6 @@ MeshEdit::~MeshEdit() {
     ChangeSet changes = differences();
     changes.epoch_before = changes.epoch_after = mesh_.epoch();
     replay(mesh_, inverse(changes));
-    // A node into which others were merged may have a dart in the map that belongs to them again.
-    for (const TouchedCorner& touched : touched_) {
-        const VertexId n = touched.node;
-        if (n.index() >= node_capacity_before_ || !mesh_.is_alive(n)) continue;
-        const CellId incident = mesh_.incident_element(n);
-        mesh_.map_.set_incident_element(n, incident, mesh_.corner_of(incident, n));
-    }
 }
 
 void MeshEdit::require_alive(CellId e) const {
@@ -92,7 +85,6 @@ void MeshEdit::remove(CellId e) {
         mesh_.unglue(other);
     }
     for (const VertexId n : mesh_.corners(e)) touched_.push_back({n, CellId()});
-    mesh_.map_.remove_element(e);
     mesh_.alive_[e.index()] = 0;
     --mesh_.num_elements_;
 }
@@ -145,14 +137,13 @@ void MeshEdit::close(FaceId a, FaceId b) {
         else
             merge(m, n, a.cell);
     }
-    mesh_.glue(a, b, shift);
+    mesh_.glue(a, b);
     touch_face(a);
     touch_face(b);
 }
 
 void MeshEdit::rewire(CellId e, int corner, VertexId to) {
     save(e);
-    mesh_.map_.set_corner(e, corner, to, mesh_.rest_position(to));
     mesh_.corners_[mesh_.corner_begin_[e.index()] + static_cast<std::size_t>(corner)] = to;
 }
 
@@ -240,14 +231,10 @@ CellId MeshEdit::divide(const RingElement& at, VertexId middle) {
     // Each half of a divided face takes its value, and the face that goes to the added half whole
     // keeps its own. The new face between the halves is inside, as it is joined below.
     mesh_.inside_faces_[added.index()] = mesh_.inside_faces_[kept.index()];
-    mesh_.map_.add_element(added, CellKind::tetrahedron, corners, mesh_.rest_positions());
     parents_.push_back(kept);
 
-    const auto join = [&](FaceId one, FaceId other) {
-        mesh_.glue(one, other, matching_shift(mesh_, one, other));
-    };
-    join({kept, inner_face}, {added, cut_face});
-    if (outer.is_valid()) join({added, inner_face}, outer);
+    mesh_.glue({kept, inner_face}, {added, cut_face});
+    if (outer.is_valid()) mesh_.glue({added, inner_face}, outer);
     // At the other corners the lowest element does not change.
     touched_.push_back({b, added});
     touched_.push_back({middle, kept});
@@ -280,7 +267,7 @@ const MeshEdit::Bisection& MeshEdit::bisect(CellId e, VertexId a, VertexId b, do
         while (ring_[next].element != other.cell) ++next;
         const FaceId one{bisection_.elements[i].added, face.face};
         const FaceId two{bisection_.elements[next].added, other.face};
-        mesh_.glue(one, two, matching_shift(mesh_, one, two));
+        mesh_.glue(one, two);
     }
     return bisection_;
 }
@@ -350,9 +337,7 @@ void MeshEdit::split_star(VertexId n, const std::vector<CellId>& candidates,
             ++mesh_.num_nodes_;
             for (const CellId e : parts[p]) rewire(e, mesh_.corner_of(e, n), keeper);
         }
-        const CellId incident = parts[p].front();
-        mesh_.incident_elements_[keeper.index()] = incident;
-        mesh_.map_.set_incident_element(keeper, incident, mesh_.corner_of(incident, keeper));
+        mesh_.incident_elements_[keeper.index()] = parts[p].front();
     }
 }
 

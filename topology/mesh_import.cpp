@@ -1,6 +1,8 @@
 // Conversion of plain arrays to a mesh: check the data, renumber for locality, divide pinched nodes
-// and build the combinatorial map.
+// and join the faces that cells share.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/topology/mesh_import.h"
+
 #include <algorithm>
 #include <numeric>
 #include <sstream>
@@ -9,7 +11,6 @@
 #include "incise/topology/geometry.h"
 #include "incise/topology/hilbert.h"
 #include "incise/topology/mesh.h"
-#include "incise/topology/mesh_check.h"
 
 namespace incise::topology {
 
@@ -48,9 +49,12 @@ std::string refusal(const std::vector<std::string>& errors) {
 /// The steps of Mesh::build, which share the mesh under construction.
 class MeshImport {
   public:
-    MeshImport(const MeshData& data, const WeldAdvice& advice)
-        : data_(data), check_(check(data, advice)) {
+    MeshImport(const MeshData& data, ImportRules rules)
+        : data_(data),
+          check_(check(data, rules.advice)),
+          keeps_order_(rules.keeps_order || !data.carriers.is_empty()) {
         if (!check_.errors.empty()) throw InputError(refusal(check_.errors));
+        if (rules.shared_faces) check_.shared_faces = std::move(*rules.shared_faces);
     }
 
     BuiltMesh run() {
@@ -58,7 +62,7 @@ class MeshImport {
         order_nodes();
         add_rows();
         divide_pinched_nodes();
-        build_map();
+        join_faces();
         mesh_.source_carriers_ = data_.carriers;
         return {std::move(mesh_), std::move(check_.warnings)};
     }
@@ -66,7 +70,7 @@ class MeshImport {
   private:
     /// Returns the cells in the order of their ids.
     std::vector<std::size_t> order_of_cells() const {
-        if (has_carriers()) {
+        if (keeps_order_) {
             std::vector<std::size_t> order(data_.num_cells());
             std::iota(order.begin(), order.end(), std::size_t{0});
             return order;
@@ -91,7 +95,7 @@ class MeshImport {
     }
 
     // Nodes are numbered in the order in which the elements first use them, or in that of the
-    // points if there are carriers. Unused points become dead nodes at the end. Every label is then
+    // points if the order is kept. Unused points become dead nodes at the end. Every label is then
     // the number of a point, and later nodes have higher ids.
     void order_nodes() {
         mesh_.label_nodes_.resize(data_.points.size());
@@ -103,7 +107,7 @@ class MeshImport {
         std::vector<std::int64_t> used;
         for (const std::size_t c : cell_of_element_)
             used.insert(used.end(), data_.cell(c).begin(), data_.cell(c).end());
-        if (has_carriers()) std::sort(used.begin(), used.end());
+        if (keeps_order_) std::sort(used.begin(), used.end());
         for (const std::int64_t p : used)
             if (!mesh_.label_nodes_[static_cast<std::size_t>(p)].is_valid())
                 number(static_cast<std::size_t>(p));
@@ -181,34 +185,31 @@ class MeshImport {
                 mesh_.incident_elements_[n.index()] = CellId(i);
     }
 
-    void build_map() {
-        for (std::size_t i = 0; i < mesh_.num_elements(); ++i) {
-            const CellId e(i);
-            mesh_.map_.add_element(e, mesh_.kind(e), mesh_.corners(e), mesh_.rest_positions());
-        }
-        for (const SharedFace& shared : check_.shared_faces) {
-            const FaceId a{element_of_cell_[shared.a.cell], shared.a.face};
-            const FaceId b{element_of_cell_[shared.b.cell], shared.b.face};
-            mesh_.glue(a, b, shared.shift);
-        }
+    void join_faces() {
+        for (const SharedFace& shared : check_.shared_faces)
+            mesh_.glue({element_of_cell_[shared.a.cell], shared.a.face},
+                       {element_of_cell_[shared.b.cell], shared.b.face});
         for (std::size_t c = 0; c < data_.cut_faces.size(); ++c)
             mesh_.inside_faces_[element_of_cell_[c].index()] |=
                 static_cast<std::uint8_t>(data_.cut_faces[c]);
     }
 
-    bool has_carriers() const { return !data_.carriers.is_empty(); }
-
     static constexpr std::size_t max_pinches_listed = 5;
 
     const MeshData& data_;
     MeshCheck check_;
+    bool keeps_order_;
     Mesh mesh_;
     std::vector<std::size_t> cell_of_element_;
     std::vector<CellId> element_of_cell_;
 };
 
+BuiltMesh import_mesh(const MeshData& data, ImportRules rules) {
+    return MeshImport(data, std::move(rules)).run();
+}
+
 BuiltMesh Mesh::build(const MeshData& data, const WeldAdvice& advice) {
-    return MeshImport(data, advice).run();
+    return import_mesh(data, {.advice = advice});
 }
 
 }  // namespace incise::topology

@@ -15,7 +15,6 @@ class MeshReplay {
     void run() {
         for (const FacePair& pair : changes_.faces_opened) mesh_.unglue(pair.a);
         for (const CellRecord& record : changes_.elements_removed) {
-            mesh_.map_.remove_element(record.id);
             mesh_.alive_[record.id.index()] = 0;
             --mesh_.num_elements_;
         }
@@ -28,13 +27,9 @@ class MeshReplay {
             ++mesh_.num_nodes_;
         }
         for (const CellRecord& record : changes_.elements_added) add(record);
-        for (const CellRewiring& rewiring : changes_.rewired) {
-            mesh_.map_.set_corner(rewiring.element, rewiring.corner, rewiring.to,
-                                  mesh_.rest_position(rewiring.to));
+        for (const CellRewiring& rewiring : changes_.rewired)
             corner(rewiring.element, rewiring.corner) = rewiring.to;
-        }
-        for (const FacePair& pair : changes_.faces_closed)
-            mesh_.glue(pair.a, pair.b, matching_shift(mesh_, pair.a, pair.b));
+        for (const FacePair& pair : changes_.faces_closed) mesh_.glue(pair.a, pair.b);
         // They do not follow from the faces that were joined: a face can have been made and opened
         // in the same edit, and the inverse of an edit takes marks away.
         for (const InsideChange& change : changes_.inside_changes)
@@ -63,7 +58,6 @@ class MeshReplay {
             for (std::size_t k = 0; k < record.corners.size(); ++k)
                 corner(e, static_cast<int>(k)) = record.corners[k];
         }
-        mesh_.map_.add_element(e, record.kind, record.corners, mesh_.rest_positions());
     }
 
     void set_incident_elements() {
@@ -94,7 +88,6 @@ class MeshReplay {
                 collect_star(mesh_, n, lowest_touched, star);
                 lowest = star.front();
             }
-            mesh_.map_.set_incident_element(n, lowest, mesh_.corner_of(lowest, n));
         }
     }
 

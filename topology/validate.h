@@ -12,7 +12,6 @@ namespace incise::topology {
 /// Returns a description of each violated invariant; empty if the mesh is valid.
 ///
 /// The invariants are:
-/// - the combinatorial map and the arrays agree, and CGAL finds the map valid
 /// - neighbours name each other and share the nodes of their face
 /// - the elements at each node are connected through faces at it
 /// - incident_element() is the lowest element at each node

@@ -22,7 +22,7 @@ int main() {
     const auto num_edits = world.step(0.5 * world.stable_step(), inputs).edits.size();
     const std::string bytes = world.save();
     for (int i = 0; i < 20; ++i) world.step(0.5 * world.stable_step());
-    const double fall = world.model().totals().momentum.z() + 9.81 * world.time();
+    const double fall = world.model().energetics().totals().momentum.z() + 9.81 * world.time();
     const int num_pieces = world.ledger().last().components;
     world.restore(bytes);
     std::printf("%zu edit, %d pieces, momentum off by %g\n", num_edits, num_pieces, fall);

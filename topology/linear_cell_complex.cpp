@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/topology/linear_cell_complex.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <unordered_map>
+#include <utility>
+
+#include "incise/base/error.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/mesh_import.h"
+
+namespace incise::topology {
+
+namespace {
+
+using Dart = LinearCellComplex::Dart_handle;
+using ConstDart = LinearCellComplex::Dart_const_handle;
+using Vertex = LinearCellComplex::Attribute_handle<0>::type;
+using ConstVertex = LinearCellComplex::Attribute_const_handle<0>::type;
+
+/// The face and position of a dart in its cell. The dart starts at the corner that cell_kind.h
+/// lists there.
+struct DartPlace {
+    int face = -1, position = -1;
+};
+template <class Value>
+using ByPlace = std::array<std::array<Value, max_face_corners>, max_faces>;
+
+/// Returns for each dart of a kind of cell the dart along the same edge on the other face there.
+constexpr ByPlace<DartPlace> opposite_darts(const CellTraits& t) {
+    ByPlace<DartPlace> places{};
+    for (int f = 0; f < t.num_faces; ++f) {
+        const auto face = t.face(f);
+        for (std::size_t p = 0; p < face.size(); ++p) {
+            const int from = face[p], to = face[(p + 1) % face.size()];
+            for (int g = 0; g < t.num_faces; ++g) {
+                const auto other = t.face(g);
+                for (std::size_t q = 0; q < other.size(); ++q)
+                    if (other[q] == to && other[(q + 1) % other.size()] == from)
+                        places[static_cast<std::size_t>(f)][p] = {g, static_cast<int>(q)};
+            }
+        }
+    }
+    return places;
+}
+
+constexpr std::array<ByPlace<DartPlace>, num_cell_kinds> opposite_places = {
+    opposite_darts(cell_traits[0]), opposite_darts(cell_traits[1]), opposite_darts(cell_traits[2]),
+    opposite_darts(cell_traits[3])};
+
+auto& at(auto& by_place, int face, int position) {
+    return by_place[static_cast<std::size_t>(face)][static_cast<std::size_t>(position)];
+}
+
+/// Visits the places of all darts of a kind of cell: visit(face, position).
+void for_each_place(const CellTraits& t, auto visit) {
+    for (int f = 0; f < t.num_faces; ++f)
+        for (int p = 0; p < static_cast<int>(t.face(f).size()); ++p) visit(f, p);
+}
+
+// Links and attributes are written dart by dart: CGAL's own operations cost several times as much.
+class ComplexMaker {
+  public:
+    ComplexMaker(const Mesh& mesh, const Carriers& carriers, LinearCellComplex& complex)
+        : mesh_(mesh), carriers_(carriers), complex_(complex) {}
+
+    void run() {
+        vertices_.resize(mesh_.node_capacity(), nullptr);
+        for (const VertexId n : mesh_.nodes()) {
+            const Vec3& x = mesh_.rest_position(n);
+            vertices_[n.index()] =
+                complex_.create_vertex_attribute(LinearCellComplex::Point(x.x(), x.y(), x.z()));
+            complex_.info_of_attribute<0>(vertices_[n.index()]) = {n};
+        }
+        cells_.resize(mesh_.element_capacity());
+        for (const CellId e : mesh_.elements()) add(e);
+        for (const CellId e : mesh_.elements())
+            for (int f = 0; f < mesh_.num_faces(e); ++f) finish({e, f});
+    }
+
+  private:
+    void add(CellId e) {
+        const CellTraits& t = traits(mesh_.kind(e));
+        ByPlace<Dart>& darts = cells_[e.index()];
+        const auto volume = complex_.create_attribute<3>();
+        ComplexCell& info = complex_.info_of_attribute<3>(volume);
+        info.id = e;
+        info.region = mesh_.region(e);
+        info.first_edge = {mesh_.face_corner({e, 0}, 0), mesh_.face_corner({e, 0}, 1)};
+        if (!carriers_.is_empty())
+            if (const std::int64_t row = carriers_.of_cell[num_cells_]; row != Carriers::whole)
+                info.carrier = carriers_.corners[static_cast<std::size_t>(row)];
+        ++num_cells_;
+        for_each_place(t, [&](int f, int p) {
+            Dart& d = at(darts, f, p);
+            d = complex_.create_dart();
+            complex_.set_dart_attribute<0>(d, vertices_[mesh_.face_corner({e, f}, p).index()]);
+            complex_.set_dart_attribute<3>(d, volume);
+        });
+        for_each_place(t, [&](int f, int p) {
+            const int size = mesh_.face_size({e, f});
+            complex_.basic_link_beta_1(at(darts, f, p), at(darts, f, (p + 1) % size));
+            const DartPlace other =
+                at(opposite_places[static_cast<std::size_t>(mesh_.kind(e))], f, p);
+            if (f < other.face)
+                complex_.basic_link_beta_for_involution<2>(at(darts, f, p),
+                                                           at(darts, other.face, other.position));
+        });
+    }
+
+    /// Joins a face to its neighbour, or says that it is on a cut.
+    void finish(FaceId f) {
+        const FaceId other = mesh_.neighbor(f);
+        const int size = mesh_.face_size(f);
+        if (!other.is_valid()) {
+            if (mesh_.is_on_cut(f))
+                complex_.set_attribute<2>(at(cells_[f.cell.index()], f.face, 0),
+                                          complex_.create_attribute<2>(ComplexFace{}));
+            return;
+        }
+        if (other < f) return;
+        const int shift = matching_shift(mesh_, f, other);
+        for (int p = 0; p < size; ++p)
+            complex_.basic_link_beta_for_involution<3>(
+                at(cells_[f.cell.index()], f.face, p),
+                at(cells_[other.cell.index()], other.face, (shift - p - 1 + 2 * size) % size));
+    }
+
+    const Mesh& mesh_;
+    const Carriers& carriers_;
+    LinearCellComplex& complex_;
+    std::vector<Vertex> vertices_;      // by node id
+    std::vector<ByPlace<Dart>> cells_;  // by element id
+    std::size_t num_cells_ = 0;
+};
+
+class ComplexReader {
+  public:
+    explicit ComplexReader(const LinearCellComplex& complex) : complex_(complex) {}
+
+    BuiltMesh run() {
+        number_vertices();
+        find_cells();
+        for (const Cell& cell : cells_) add(cell);
+        for (std::size_t c = 0; c < cells_.size(); ++c) read_faces(c);
+        data_.points_may_coincide = true;  // a cut leaves two vertices at one position
+        return import_mesh(data_, {.shared_faces = std::move(shared_), .keeps_order = true});
+    }
+
+  private:
+    struct Cell {
+        CellKind kind{};
+        ComplexCell info;
+        std::vector<ConstDart> darts;
+        std::vector<std::int64_t> corners;
+    };
+
+    /// Returns where an id stands in the order: after all valid ones if it is invalid.
+    template <class Id>
+    static std::int64_t rank(Id id) {
+        return id.is_valid() ? id.value : std::numeric_limits<std::int64_t>::max();
+    }
+
+    void number_vertices() {
+        std::vector<ConstVertex> vertices;
+        const auto& all = complex_.attributes<0>();
+        for (auto v = all.begin(); v != all.end(); ++v) vertices.push_back(v);
+        const auto id_of = [&](ConstVertex v) { return rank(complex_.info_of_attribute<0>(v).id); };
+        std::stable_sort(vertices.begin(), vertices.end(),
+                         [&](ConstVertex a, ConstVertex b) { return id_of(a) < id_of(b); });
+        for (const ConstVertex v : vertices) {
+            const auto& x = complex_.point_of_vertex_attribute(v);
+            numbers_[v] = std::ssize(data_.points);
+            data_.points.emplace_back(x.x(), x.y(), x.z());
+        }
+    }
+
+    void find_cells() {
+        const auto& volumes = complex_.one_dart_per_cell<3>();
+        for (auto d = volumes.begin(); d != volumes.end(); ++d) {
+            Cell cell;
+            const auto& darts = complex_.darts_of_cell<3>(d);
+            for (auto it = darts.begin(); it != darts.end(); ++it) cell.darts.push_back(it);
+            if (complex_.attribute<3>(d) != nullptr) cell.info = complex_.info<3>(d);
+            read_corners(cell);
+            cells_.push_back(std::move(cell));
+        }
+        std::stable_sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) {
+            return rank(a.info.id) < rank(b.info.id);
+        });
+        for (std::size_t c = 0; c < cells_.size(); ++c)
+            for (const ConstDart d : cells_[c].darts) cell_of_[d] = c;
+    }
+
+    std::int64_t number_of(ConstDart d) const {
+        const ConstVertex v = complex_.attribute<0>(d);
+        if (v == nullptr) throw InputError("linear cell complex: a dart has no vertex attribute");
+        return numbers_.at(v);
+    }
+
+    /// Gives the corners of a cell their places, with `first` as the first dart of the first face.
+    /// Returns false if the cell is of another kind.
+    bool place_corners(Cell& cell, ConstDart first) const {
+        const CellTraits& t = traits(cell.kind);
+        ByPlace<ConstDart> darts{};
+        at(darts, 0, 0) = first;
+        std::vector<std::pair<DartPlace, ConstDart>> open{{{0, 0}, first}};
+        bool fits = true;
+        const auto reach = [&](int f, int p, ConstDart d) {
+            ConstDart& known = at(darts, f, p);
+            if (known == nullptr) open.push_back({{f, p}, d});
+            if (known == nullptr) known = d;
+            fits = fits && known == d;
+        };
+        while (fits && !open.empty()) {
+            const auto [place, d] = open.back();
+            open.pop_back();
+            const int size = static_cast<int>(t.face(place.face).size());
+            if (complex_.is_free<1>(d) || complex_.is_free<2>(d)) return false;
+            reach(place.face, (place.position + 1) % size, complex_.beta<1>(d));
+            const DartPlace other = at(opposite_places[static_cast<std::size_t>(cell.kind)],
+                                       place.face, place.position);
+            reach(other.face, other.position, complex_.beta<2>(d));
+        }
+        if (!fits) return false;
+        cell.corners.assign(static_cast<std::size_t>(t.num_corners), -1);
+        for_each_place(t, [&](int f, int p) {
+            std::int64_t& corner =
+                cell.corners[static_cast<std::size_t>(t.face(f)[static_cast<std::size_t>(p)])];
+            const std::int64_t number = number_of(at(darts, f, p));
+            fits = fits && (corner == -1 || corner == number);
+            corner = number;
+        });
+        return fits;
+    }
+
+    void read_corners(Cell& cell) const {
+        const auto is_first = [&](ConstDart d) {
+            const auto id = [&](ConstDart dart) {
+                const ConstVertex v = complex_.attribute<0>(dart);
+                return v == nullptr ? VertexId() : complex_.info_of_attribute<0>(v).id;
+            };
+            return id(d).is_valid() && !complex_.is_free<1>(d) &&
+                   std::array{id(d), id(complex_.beta<1>(d))} == cell.info.first_edge;
+        };
+        std::stable_partition(cell.darts.begin(), cell.darts.end(), is_first);
+        for (int k = 0; k < num_cell_kinds; ++k) {
+            cell.kind = static_cast<CellKind>(k);
+            if (std::ssize(cell.darts) != traits(cell.kind).num_face_corners()) continue;
+            for (const ConstDart d : cell.darts)
+                if (place_corners(cell, d)) {
+                    orient(cell);
+                    return;
+                }
+        }
+        std::ostringstream text;
+        text << "linear cell complex: a volume of " << cell.darts.size() << " darts";
+        if (cell.info.id.is_valid()) text << ", cell " << cell.info.id.value << ",";
+        text << " is no tetrahedron, hexahedron, wedge or pyramid";
+        throw InputError(text.str());
+    }
+
+    /// CGAL leaves it to the user whether faces run anticlockwise as seen from outside.
+    void orient(Cell& cell) const {
+        std::vector<Vec3> x;
+        for (const std::int64_t p : cell.corners)
+            x.push_back(data_.points[static_cast<std::size_t>(p)]);
+        if (signed_volume(cell.kind, x) >= 0.0) return;
+        const auto before = cell.corners;
+        for (std::size_t k = 0; k < before.size(); ++k)
+            cell.corners[k] = before[static_cast<std::size_t>(traits(cell.kind).mirrored[k])];
+    }
+
+    void add(const Cell& cell) {
+        data_.add_cell(cell.kind, cell.corners, cell.info.region);
+        data_.carriers.of_cell.push_back(Carriers::whole);
+        if (!cell.info.carrier) return;
+        std::array<double, 12> key{};
+        for (std::size_t k = 0; k < key.size(); ++k)
+            key[k] = (*cell.info.carrier)[k / 3][static_cast<Eigen::Index>(k % 3)];
+        auto& rows = data_.carriers.corners;
+        const auto [row, is_new] = rows_.try_emplace(key, std::ssize(rows));
+        if (is_new) rows.push_back(*cell.info.carrier);
+        data_.carriers.of_cell.back() = row->second;
+    }
+
+    /// Returns the number of the face of a dart in its cell.
+    int face_of(const Cell& cell, ConstDart d) const {
+        std::vector<std::int64_t> points;
+        ConstDart walking = d;
+        do {
+            points.push_back(number_of(walking));
+            walking = complex_.beta<1>(walking);
+        } while (walking != d);
+        const CellTraits& t = traits(cell.kind);
+        for (int f = 0; f < t.num_faces; ++f) {
+            const auto face = t.face(f);
+            if (face.size() == points.size() && std::ranges::all_of(face, [&](int k) {
+                    return std::ranges::find(points, cell.corners[static_cast<std::size_t>(k)]) !=
+                           points.end();
+                }))
+                return f;
+        }
+        throw InputError("linear cell complex: a face has other corners than its cell");
+    }
+
+    void read_faces(std::size_t c) {
+        const Cell& cell = cells_[c];
+        std::array<bool, max_faces> is_read{};
+        std::int32_t on_cuts = 0;
+        for (const ConstDart d : cell.darts) {
+            const int f = face_of(cell, d);
+            if (std::exchange(is_read[static_cast<std::size_t>(f)], true)) continue;
+            if (complex_.is_free<3>(d)) {
+                if (complex_.attribute<2>(d) != nullptr && complex_.info<2>(d).is_on_cut)
+                    on_cuts |= 1 << f;
+                continue;
+            }
+            const ConstDart far = complex_.beta<3>(d);
+            const std::size_t other = cell_of_.at(far);
+            const SourceFace here{c, f}, there{other, face_of(cells_[other], far)};
+            if (here < there) shared_.push_back({here, there, shift_of(here, there)});
+        }
+        data_.cut_faces.push_back(on_cuts);
+    }
+
+    /// Returns the position in a face of a cell of the point at position 0 of another face.
+    int shift_of(SourceFace a, SourceFace b) const {
+        const auto point = [&](SourceFace face, int position) {
+            const Cell& cell = cells_[face.cell];
+            return cell.corners[static_cast<std::size_t>(
+                traits(cell.kind).face(face.face)[static_cast<std::size_t>(position)])];
+        };
+        const int size = static_cast<int>(traits(cells_[a.cell].kind).face(a.face).size());
+        for (int shift = 0; shift < size; ++shift) {
+            bool fits = true;
+            for (int p = 0; p < size && fits; ++p)
+                fits = point(a, p) == point(b, (shift - p + size) % size);
+            if (fits) return shift;
+        }
+        throw InputError("linear cell complex: two faces that are sewn have other vertices");
+    }
+
+    const LinearCellComplex& complex_;
+    std::unordered_map<ConstVertex, std::int64_t> numbers_;
+    std::unordered_map<ConstDart, std::size_t> cell_of_;
+    std::vector<Cell> cells_;
+    MeshData data_;
+    std::map<std::array<double, 12>, std::int64_t> rows_;  // of carriers, by their corners
+    std::vector<SharedFace> shared_;
+};
+
+/// Reads numbers from an attribute in a file.
+template <class... Numbers>
+bool read_numbers(std::istringstream& text, Numbers&... numbers) {
+    return static_cast<bool>((text >> ... >> numbers));
+}
+
+[[noreturn]] void refuse_attribute(const std::string& text) {
+    throw InputError("linear cell complex: '" + text + "' is no attribute of a mesh of Incise");
+}
+
+}  // namespace
+
+LinearCellComplex to_linear_cell_complex(const Mesh& mesh, const Carriers& carriers) {
+    LinearCellComplex complex;
+    ComplexMaker(mesh, carriers, complex).run();
+    return complex;
+}
+
+BuiltMesh from_linear_cell_complex(const LinearCellComplex& complex) {
+    return ComplexReader(complex).run();
+}
+
+void write_cmap_attribute_node(boost::property_tree::ptree& node, const ComplexVertex& vertex) {
+    node.add("v", vertex.id.value);
+}
+
+void write_cmap_attribute_node(boost::property_tree::ptree& node, const ComplexFace& face) {
+    node.add("v", face.is_on_cut ? 1 : 0);
+}
+
+void write_cmap_attribute_node(boost::property_tree::ptree& node, const ComplexCell& cell) {
+    std::ostringstream text;
+    text.precision(std::numeric_limits<double>::max_digits10);
+    text << cell.id.value << ' ' << cell.region << ' ' << cell.first_edge[0].value << ' '
+         << cell.first_edge[1].value << ' ' << (cell.carrier ? 1 : 0);
+    if (cell.carrier)
+        for (const Vec3& x : *cell.carrier) text << ' ' << x[0] << ' ' << x[1] << ' ' << x[2];
+    node.add("v", text.str());
+}
+
+void read_cmap_attribute_node(const boost::property_tree::ptree::value_type& node,
+                              ComplexVertex& vertex) {
+    std::istringstream text(node.second.data());
+    if (!read_numbers(text, vertex.id.value)) refuse_attribute(node.second.data());
+}
+
+void read_cmap_attribute_node(const boost::property_tree::ptree::value_type& node,
+                              ComplexFace& face) {
+    std::istringstream text(node.second.data());
+    if (!read_numbers(text, face.is_on_cut)) refuse_attribute(node.second.data());
+}
+
+void read_cmap_attribute_node(const boost::property_tree::ptree::value_type& node,
+                              ComplexCell& cell) {
+    std::istringstream text(node.second.data());
+    bool has_carrier = false;
+    bool is_read = read_numbers(text, cell.id.value, cell.region, cell.first_edge[0].value,
+                                cell.first_edge[1].value, has_carrier);
+    if (is_read && has_carrier)
+        for (Vec3& x : cell.carrier.emplace())
+            is_read = is_read && read_numbers(text, x[0], x[1], x[2]);
+    if (!is_read) refuse_attribute(node.second.data());
+}
+
+}  // namespace incise::topology
