@@ -29,6 +29,8 @@ void label_image(std::string_view bytes) {
         const auto& d = image.dimensions;
         if (image.labels.size() != static_cast<std::size_t>(d[0] * d[1] * d[2]))
             require_none("labels that do not fit the dimensions");
+        if (!(image.spacing.array() > 0.0).all() || !image.directions.allFinite())
+            require_none("a spacing or directions that cannot be");
     });
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/io/reader_samples.h"
+#include "tests/io/refusals.h"
 
 namespace incise::io {
 namespace {
@@ -39,12 +40,6 @@ std::string many_tetrahedra() {
     return text;
 }
 
-std::string abaqus_refusal_with(std::string_view from, std::string_view to) {
-    return refusal("liver.inp", replaced(abaqus_tetrahedra, from, to));
-}
-std::string abaqus_refusal_behind(std::string_view more) {
-    return refusal("liver.inp", abaqus_tetrahedra + std::string(more));
-}
 std::vector<int> regions_behind(std::string_view more) {
     return read_bytes("a.inp", abaqus_tetrahedra + std::string(more)).mesh.regions;
 }
@@ -222,15 +217,17 @@ TEST(AbaqusReader, ReadsTheOnePartOfAnAssembly) {
                      replaced(assembly, "0., 0., 0.\n", "** here\n" + abaqus_tetrahedra);
     expect_same_mesh(read_bytes("a.inp", own).mesh, file.mesh);
 
-    EXPECT_THAT(refusal("a.inp", part + replaced(assembly, "0., 0., 0.", "0., 0., 2.")),
-                HasSubstr("*INSTANCE moves the part"));
-    EXPECT_THAT(refusal("a.inp", part + replaced(assembly, "0., 0., 0.", "0., zero")),
-                HasSubstr("expected a translation or rotation, found 'zero'"));
-    EXPECT_THAT(refusal("a.inp", part + replaced(assembly, "*End Assembly",
-                                                 "*Instance, name=Liver-2, part=Liver")),
-                HasSubstr("second *INSTANCE"));
-    EXPECT_THAT(refusal("a.inp", part + replaced(part, "Liver", "Stone") + assembly),
-                AllOf(StartsWith("a.inp:19: "), HasSubstr("of a second part")));
+    const std::string move = "part=Liver\n0., 0., 0.";
+    expect_refusals(
+        "a.inp", part + assembly,
+        {
+            {move, "part=Liver\n0., 0., 2.", "...*INSTANCE moves the part..."},
+            {move, "part=Liver\n0., zero",
+             "...expected a translation or rotation, found 'zero'..."},
+            {"*End Assembly", "*Instance, name=Liver-2, part=Liver", "...second *INSTANCE..."},
+            {"", part + replaced(part, "Liver", "Stone") + assembly,
+             "a.inp:19: ...of a second part..."},
+        });
 }
 
 TEST(AbaqusReader, LeavesOutElementsThatAreNoSolids) {
@@ -247,79 +244,62 @@ TEST(AbaqusReader, LeavesOutElementsThatAreNoSolids) {
                                       "and 1 network element:")));
 }
 
-TEST(AbaqusReader, RefusesHigherOrderAndUnknownSolids) {
-    EXPECT_THAT(abaqus_refusal_with("C3D4", "C3D10M"),
-                AllOf(StartsWith("liver.inp:11: element 7: a second-order tetrahedron (TYPE "
-                                 "C3D10M) cannot be used"),
-                      HasSubstr("export linear elements")));
-    EXPECT_THAT(abaqus_refusal_with("C3D4", "C3D20R"), HasSubstr("second-order hexahedron"));
+const std::vector<Fault> abaqus_faults = {
+    // Higher order and unknown solids.
+    {"C3D4", "C3D10M",
+     "a.inp:11: element 7: a second-order tetrahedron (TYPE C3D10M) cannot be used...export linear "
+     "elements..."},
+    {"C3D4", "C3D20R", "...second-order hexahedron..."},
+    {"type=C3D4, ", "", "a.inp:10: *ELEMENT has no TYPE"},
+    // Unknown nodes and numbers given twice.
+    {"50, 40", "50, 927", "a.inp:12: element 3: node 927 is not one of the 5 nodes"},
+    {"50, 40", "50, 0", "a.inp:12: expected a node, from 1 on, found '0'"},
+    {" 40, 1.", " 10, 1.",
+     "a.inp: number 10 is given to two nodes, the nodes number 2 and 5 in the order of the file; "
+     "give each node one of its own"},
+    {"3, 10", "7, 10", "a.inp:12: number 7 is given to two elements"},
+    // Rows of the wrong length.
+    {"50, 40", "50",
+     "a.inp:12: element 3: has 3 of the 4 nodes of a tetrahedron; the file is cut short or "
+     "damaged"},
+    {"20, 50\n", "20\n", "a.inp:12: element 7: has 8 nodes; a tetrahedron has 4"},
+    // What is no number.
+    {"40, 1.", "40, nan", "a.inp:9: coordinate x is nan; it must be finite"},
+    {"40, 1.", "40, 1.D999", "...found '1.D999', which is out of range: -1.79..."},
+    {"40, 1.", "40, one", "a.inp:9: expected coordinate x, found 'one'"},
+    {" 40, 1.", " 4e1, 1.", "...the number of a node..."},
+    {"50, 40", "50, 99999999999999999999",
+     "...expected a node, from 1 on, found '99999999999999999999', which is out of range: "
+     "-9223372036854775808 to 9223372036854775807 are allowed..."},
+    {"", abaqus_nodes, "a.inp: holds no cells at all..."},
+};
+
+/// Lines that take the place of the comment behind the elements.
+const std::vector<Fault> abaqus_faults_behind = {
+    {"** more", "*ELSET\n1\n", "a.inp:13: *ELSET has no name, ELSET=..."},
+    {"** more", "*ELSET, ELSET=A\n3, B\n*NODE\n", "a.inp:14: element set 'B' is not defined"},
+    {"** more", "*ELSET, ELSET=A\n3, 99999999999999999999\n",
+     "a.inp:14: expected an element, found '99999999999999999999', which..."},
+    {"** more", "*ELSET, ELSET=A\n-3\n", "...elements -3 to -3..."},
+    {"** more", "*ELSET, ELSET=A, GENERATE\n5, 3\n", "...elements 5 to 3 by steps of 1..."},
+    {"** more", "*ELSET, ELSET=A, GENERATE\n1, 3, 0\n",
+     "...expected the step, from 1 on, found '0'..."},
+    {"** more", "*ELSET, ELSET=A, GENERATE\n1\n", "...needs a first and a last element..."},
+    {"** more", "*SOLID SECTION, ELSET=B\n", "a.inp:13: element set 'B' is not defined"},
+    {"** more", "*SOLID SECTION\n", "a.inp:13: *SOLID SECTION has no ELSET"},
+};
+
+TEST(AbaqusReader, RefusesFaultyFiles) {
+    expect_refusals("a.inp", abaqus_tetrahedra, abaqus_faults);
+    expect_refusals("a.inp", abaqus_tetrahedra + "** more", abaqus_faults_behind);
     for (const auto* type : {"C3D7", "C3D", "SC8R", "U1", "COH3D8"})
-        EXPECT_THAT(abaqus_refusal_with("C3D4", type),
-                    StartsWith(std::string("liver.inp:10: TYPE='") + type + "': is not known"));
-    EXPECT_EQ(abaqus_refusal_with("type=C3D4, ", ""), "liver.inp:10: *ELEMENT has no TYPE");
-    EXPECT_THAT(refusal("liver.inp", abaqus_nodes), HasSubstr("liver.inp: holds no cells at all"));
-}
-
-TEST(AbaqusReader, RefusesUnknownNodesAndNumbersGivenTwice) {
-    EXPECT_EQ(abaqus_refusal_with("50, 40", "50, 927"),
-              "liver.inp:12: element 3: node 927 is not one of the 5 nodes");
-    EXPECT_EQ(abaqus_refusal_with("50, 40", "50, 0"),
-              "liver.inp:12: expected a node, from 1 on, found '0'");
-    EXPECT_EQ(
-        abaqus_refusal_with(" 40, 1.", " 10, 1."),
-        "liver.inp: number 10 is given to two nodes, the nodes number 2 and 5 in the order of "
-        "the file; give each node one of its own");
-    EXPECT_EQ(abaqus_refusal_with("3, 10", "7, 10"),
-              "liver.inp:12: number 7 is given to two elements");
-}
-
-TEST(AbaqusReader, RefusesRowsOfTheWrongLength) {
-    EXPECT_EQ(abaqus_refusal_with("50, 40", "50"),
-              "liver.inp:12: element 3: has 3 of the 4 nodes of a tetrahedron; the file is cut "
-              "short or damaged");
-    EXPECT_EQ(abaqus_refusal_with("20, 50\n", "20\n"),
-              "liver.inp:12: element 7: has 8 nodes; a tetrahedron has 4");
-}
-
-TEST(AbaqusReader, RefusesWhatIsNoNumber) {
-    EXPECT_EQ(abaqus_refusal_with("40, 1.", "40, nan"),
-              "liver.inp:9: coordinate x is nan; it must be finite");
-    EXPECT_THAT(abaqus_refusal_with("40, 1.", "40, 1.D999"),
-                HasSubstr("found '1.D999', which is out of range: -1.79"));
-    EXPECT_EQ(abaqus_refusal_with("40, 1.", "40, one"),
-              "liver.inp:9: expected coordinate x, found 'one'");
-    EXPECT_THAT(abaqus_refusal_with(" 40, 1.", " 4e1, 1."), HasSubstr("the number of a node"));
-    EXPECT_THAT(abaqus_refusal_with("50, 40", "50, 99999999999999999999"),
-                HasSubstr("expected a node, from 1 on, found '99999999999999999999', which is out "
-                          "of range: -9223372036854775808 to 9223372036854775807 are allowed"));
-    EXPECT_THAT(
-        abaqus_refusal_behind("*ELSET, ELSET=A\n3, 99999999999999999999\n"),
-        StartsWith("liver.inp:14: expected an element, found '99999999999999999999', which"));
-}
-
-TEST(AbaqusReader, RefusesSetsThatAreNone) {
-    EXPECT_EQ(abaqus_refusal_behind("*ELSET\n1\n"), "liver.inp:13: *ELSET has no name, ELSET=...");
-    EXPECT_EQ(abaqus_refusal_behind("*ELSET, ELSET=A\n3, B\n*NODE\n"),
-              "liver.inp:14: element set 'B' is not defined");
-    EXPECT_EQ(abaqus_refusal_behind("*SOLID SECTION, ELSET=B\n"),
-              "liver.inp:13: element set 'B' is not defined");
-    EXPECT_EQ(abaqus_refusal_behind("*SOLID SECTION\n"),
-              "liver.inp:13: *SOLID SECTION has no ELSET");
-    const std::string generate = "*ELSET, ELSET=A, GENERATE\n";
-    EXPECT_THAT(abaqus_refusal_behind(generate + "5, 3\n"),
-                HasSubstr("elements 5 to 3 by steps of 1"));
-    EXPECT_THAT(abaqus_refusal_behind(generate + "1, 3, 0\n"), HasSubstr("found '0'"));
-    EXPECT_THAT(abaqus_refusal_behind(generate + "1\n"),
-                HasSubstr("needs a first and a last element"));
-    EXPECT_THAT(abaqus_refusal_behind("*ELSET, ELSET=A\n-3\n"), HasSubstr("elements -3 to -3"));
-}
-
-TEST(AbaqusReader, RefusesWhatItDoesNotFollow) {
+        expect_refusals(
+            "a.inp", abaqus_tetrahedra,
+            {{"C3D4", type, "a.inp:10: TYPE='" + std::string(type) + "': is not known..."}});
     for (const auto* keyword :
          {"*NGEN", "*nfill", "*NCOPY", "*NMAP", "*SYSTEM", "*El Gen", "*ELCOPY", "*NODE, SYSTEM=C"})
-        EXPECT_THAT(abaqus_refusal_behind(std::string(keyword) + "\n1, 2\n"),
-                    AllOf(StartsWith("liver.inp:13: "), HasSubstr("export")))
-            << keyword;
+        expect_refusals("a.inp", abaqus_tetrahedra + "** more",
+                        {{"** more", std::string(keyword) + "\n1, 2\n", "a.inp:13: ...export..."}});
 }
 
 }  // namespace

@@ -8,14 +8,12 @@
 #include <string>
 
 #include "tests/io/reader_samples.h"
+#include "tests/io/refusals.h"
 
 namespace incise::io {
 namespace {
 
-using testing::AllOf;
 using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 const std::string febio_4 = R"(<?xml version="1.0" encoding="ISO-8859-1"?>
 <febio_spec version="4.0">
@@ -44,10 +42,6 @@ const std::string febio_2 =
                                "</Mesh>", "</Geometry>"),
                       "name=\"Liver\"", "mat=\"4\" name=\"Liver\""),
              "type=\"tet4\" name=\"Tumour\"", "type=\"tet4\" mat=\"2\"");
-
-std::string febio_refusal(std::string_view from, std::string_view to) {
-    return refusal("a.feb", replaced(febio_4, from, to));
-}
 
 TEST(FebioReader, KeepsTheOrderOfTheFile) {
     const auto file = read_bytes("a.feb", febio_4);
@@ -95,60 +89,57 @@ TEST(FebioReader, TurnsPentasIntoWedges) {
     expect_wedge_of_unit_height(file.mesh);
 }
 
-TEST(FebioReader, RefusesWrongNumbers) {
-    EXPECT_EQ(febio_refusal("0,0,1<", "0,0<"), "a.feb:9: a node has 2 coordinates; it must have 3");
-    EXPECT_THAT(febio_refusal("0,0,1<", "0,x,1<"),
-                StartsWith("a.feb:9: expected a coordinate, found 'x'"));
-    EXPECT_THAT(febio_refusal("0,0,1<", "0,,1<"),
-                StartsWith("a.feb:9: expected a coordinate, found ''"));
-    EXPECT_EQ(febio_refusal("0,0,1<", "0,0,inf<"),
-              "a.feb:9: a coordinate is inf; it must be finite");
-    EXPECT_EQ(febio_refusal("node id=\"5\"", "node id=\"five\""),
-              "a.feb:9: node: the id is 'five'; it must be a whole number from 1 on");
-    EXPECT_THAT(febio_refusal("node id=\"5\"", "node"), HasSubstr("a.feb:9: node: the id is ''"));
-    EXPECT_THAT(febio_refusal("node id=\"5\"", "node id=\"4\""),
-                StartsWith("a.feb: node 4 is given to two nodes"));
-    EXPECT_EQ(febio_refusal("1,2,5,4<", "1,2,5,9<"),
-              "a.feb:16: element 6: node 9 is not one of the 5 nodes");
-    EXPECT_EQ(febio_refusal("1,2,5,4<", "1,2,5<"),
-              "a.feb:16: element 6: has 3 nodes; a tetrahedron has 4");
-    EXPECT_EQ(febio_refusal(">6</ElementSet", ">8</ElementSet"),
-              "a.feb:18: element 8 of an ElementSet is not one of the 2 elements");
-    EXPECT_EQ(refusal("a.feb", replaced(replaced(febio_4, "elem id=\"6\"", "elem id=\"7\""),
-                                        ">6</ElementSet", ">7</ElementSet")),
-              "a.feb:18: element 7 of an ElementSet is the number of 2 elements; give each element "
-              "a number of its own");
-    EXPECT_EQ(refusal("a.feb", replaced(febio_2, "mat=\"2\"", "mat=\"Soft\"")),
-              "a.feb:15: mat is 'Soft'; it must be the number of a material");
-}
+const std::vector<Fault> febio_4_faults = {
+    // Wrong numbers.
+    {"0,0,1<", "0,0<", "a.feb:9: a node has 2 coordinates; it must have 3"},
+    {"0,0,1<", "0,x,1<", "a.feb:9: expected a coordinate, found 'x'..."},
+    {"0,0,1<", "0,,1<", "a.feb:9: expected a coordinate, found ''..."},
+    {"0,0,1<", "0,0,inf<", "a.feb:9: a coordinate is inf; it must be finite"},
+    {"node id=\"5\"", "node id=\"five\"",
+     "a.feb:9: node: the id is 'five'; it must be a whole number from 1 on"},
+    {"node id=\"5\"", "node", "...a.feb:9: node: the id is ''..."},
+    {"node id=\"5\"", "node id=\"4\"", "a.feb: node 4 is given to two nodes..."},
+    {"1,2,5,4<", "1,2,5,9<", "a.feb:16: element 6: node 9 is not one of the 5 nodes"},
+    {"1,2,5,4<", "1,2,5<", "a.feb:16: element 6: has 3 nodes; a tetrahedron has 4"},
+    {">6</ElementSet", ">8</ElementSet",
+     "a.feb:18: element 8 of an ElementSet is not one of the 2 elements"},
+    // What cannot be read.
+    {"version=\"4.0\"", "version=\"1.2\"",
+     "a.feb:2: version '1.2' cannot be read; save the model as..."},
+    {"version=\"4.0\"", "version=\"2.5\"",
+     "a.feb:2: has no section Geometry, and so no mesh; give the file of the model that has one"},
+    {"type=\"tet4\"", "type=\"blob7\"",
+     "a.feb:12: type 'blob7' of Elements is not known; export tet4..."},
+    {"type=\"tet4\"", "type=\"tet10\"",
+     "a.feb:13: element 7: a second-order tetrahedron (type tet10)...export linear elements..."},
+    {"</Nodes>", "</nodes>", "a.feb:11: not well-formed XML...cut short..."},
+    {" name=\"Right\"", "", "a.feb:18: ElementSet has no name..."},
+    {"", "<?xml version=\"1.0\"?><other/>",
+     "a.feb: is XML, but has no febio_spec element: its first element is 'other'; give the file of "
+     "a model of FEBio"},
+};
 
-TEST(FebioReader, RefusesWhatItCannotRead) {
-    EXPECT_THAT(febio_refusal("version=\"4.0\"", "version=\"1.2\""),
-                StartsWith("a.feb:2: version '1.2' cannot be read; save the model as"));
-    EXPECT_EQ(
-        febio_refusal("version=\"4.0\"", "version=\"2.5\""),
-        "a.feb:2: has no section Geometry, and so no mesh; give the file of the model that has "
-        "one");
-    EXPECT_THAT(febio_refusal("type=\"tet4\"", "type=\"blob7\""),
-                StartsWith("a.feb:12: type 'blob7' of Elements is not known; export tet4"));
-    EXPECT_THAT(febio_refusal("type=\"tet4\"", "type=\"tet10\""),
-                AllOf(StartsWith("a.feb:13: element 7: a second-order tetrahedron (type tet10)"),
-                      HasSubstr("export linear elements")));
-    EXPECT_THAT(refusal("a.feb", replaced(febio_2, "<Geometry>", "<Geometry><Part name=\"a\"/>")),
-                StartsWith("a.feb:4: Part is not read; save the mesh as one"));
-    EXPECT_THAT(febio_refusal("</Nodes>", "</nodes>"),
-                AllOf(StartsWith("a.feb:11: not well-formed XML"), HasSubstr("cut short")));
-    EXPECT_THAT(febio_refusal(" name=\"Right\"", ""),
-                StartsWith("a.feb:18: ElementSet has no name"));
-    EXPECT_EQ(
-        refusal("a.feb", "<?xml version=\"1.0\"?><other/>"),
-        "a.feb: is XML, but has no febio_spec element: its first element is 'other'; give the "
-        "file of a model of FEBio");
-    EXPECT_THAT(refusal("a.xml", "<?xml version=\"1.0\"?>\n<!-- fit -->\n<febio_optimize/>"),
-                AllOf(HasSubstr("its first element is 'febio_optimize', which tells FEBio what"),
-                      HasSubstr("give the file of the model")));
-    EXPECT_THAT(refusal("a.xml", "<other/>"),
-                HasSubstr("is XML, but has no VTKFile element: its first one is 'other'"));
+const std::vector<Fault> febio_2_faults = {
+    {"mat=\"2\"", "mat=\"Soft\"", "a.feb:15: mat is 'Soft'; it must be the number of a material"},
+    {"<Geometry>", "<Geometry><Part name=\"a\"/>",
+     "a.feb:4: Part is not read; save the mesh as one..."},
+};
+
+const std::vector<Fault> xml_faults = {
+    {"", "<?xml version=\"1.0\"?>\n<!-- fit -->\n<febio_optimize/>",
+     "...its first element is 'febio_optimize', which tells FEBio what...give the file of the "
+     "model..."},
+    {"", "<other/>", "...is XML, but has no VTKFile element: its first one is 'other'..."},
+};
+
+TEST(FebioReader, RefusesFaultyFiles) {
+    expect_refusals("a.feb", febio_4, febio_4_faults);
+    expect_refusals("a.feb", febio_2, febio_2_faults);
+    expect_refusals("a.feb", replaced(febio_4, "elem id=\"6\"", "elem id=\"7\""),
+                    {{">6</ElementSet", ">7</ElementSet",
+                      "a.feb:18: element 7 of an ElementSet is the number of 2 elements; give each "
+                      "element a number of its own"}});
+    expect_refusals("a.xml", "", xml_faults);
 }
 
 }  // namespace

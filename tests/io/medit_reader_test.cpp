@@ -8,14 +8,13 @@
 #include <string>
 
 #include "tests/io/reader_samples.h"
+#include "tests/io/refusals.h"
 
 namespace incise::io {
 namespace {
 
-using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::StartsWith;
 
 // The layout is TetGen's (option -g): the number of dimensions on a line of its own, comments.
 const std::string medit_tetrahedra = R"(MeshVersionFormatted 1
@@ -45,10 +44,6 @@ Corners
 
 End
 )";
-
-std::string medit_refusal_with(std::string_view from, std::string_view to) {
-    return refusal("liver.mesh", replaced(medit_tetrahedra, from, to));
-}
 
 TEST(MeditReader, TakesReferencesOfCellsAsRegions) {
     const auto file = read_bytes("a.mesh", medit_tetrahedra);
@@ -104,64 +99,49 @@ TEST(MeditReader, StepsOverWhatItDoesNotNeed) {
                 ElementsAre(HasSubstr("has no End")));
 }
 
-TEST(MeditReader, RefusesUnknownVertices) {
-    EXPECT_EQ(medit_refusal_with("4      5", "4      927"),
-              "liver.mesh:19: tetrahedron 2: vertex 927 is out of range (5 vertices, numbered from "
-              "1)");
-    EXPECT_THAT(medit_refusal_with("4      5", "4      0"), HasSubstr("vertex 0 is out of range"));
-    EXPECT_THAT(medit_refusal_with("4      5", "4      -1"),
-                HasSubstr("vertex -1 is out of range"));
-    EXPECT_THAT(refusal("a.mesh", "MeshVersionFormatted 2 Tetrahedra 1 1 2 3 4 0 Vertices 0 End"),
-                HasSubstr("Tetrahedra comes before Vertices"));
-    EXPECT_THAT(medit_refusal_with("Vertices", "Normals"),
-                HasSubstr("Tetrahedra comes before Vertices"));
-}
+const std::vector<Fault> medit_faults = {
+    // Unknown vertices.
+    {"4      5", "4      927",
+     "a.mesh:19: tetrahedron 2: vertex 927 is out of range (5 vertices, numbered from 1)"},
+    {"4      5", "4      0", "...vertex 0 is out of range..."},
+    {"4      5", "4      -1", "...vertex -1 is out of range..."},
+    {"", "MeshVersionFormatted 2 Tetrahedra 1 1 2 3 4 0 Vertices 0 End",
+     "...Tetrahedra comes before Vertices..."},
+    {"Vertices", "Normals", "...Tetrahedra comes before Vertices..."},
+    // Counts that the file cannot hold.
+    {"Vertices\n5", "Vertices\n4000000000",
+     "a.mesh:8: the number of vertices is 4000000000...more than can be in the remaining..."},
+    {"Tetrahedra\n2", "Tetrahedra\n18446744073709551615",
+     "a.mesh:17: the number of rows of Tetrahedra is 1844674407370955..."},
+    {"Vertices\n5", "Vertices\n-5", "...found '-5'..."},
+    {"Vertices\n5", "Vertices\n4",
+     "a.mesh:13: expected a keyword behind the rows of the section before, found '1'"},
+    {"Tetrahedra\n2", "Tetrahedra\n3", "a.mesh:21: expected a vertex, found 'Corners'"},
+    // What is no number.
+    {"0  1  0    0", "0  nan  0    0", "a.mesh:11: a y coordinate is nan; it must be finite"},
+    {"0  1  0    0", "0  1  -inf    0", "...z coordinate is -inf..."},
+    {"0  1  0    0", "0  1,5  0    0", "...found '1,5'..."},
+    {"4  10", "4  1e10",
+     "a.mesh:18: expected a reference, a whole number of 32 bits, found '1e10'"},
+    {"4  10", "4  3000000000",
+     "...of 32 bits, found '3000000000', which is out of range: -2147483648 to ..."},
+    {"Vertices\n5", "Vertices\n18446744073709551617",
+     "...expected the number of vertices, found '18446744073709551617', which is out of range: 0 "
+     "to 18446744073709551615 are allowed..."},
+    // What cannot be read.
+    {"Formatted 1", "Formatted 5",
+     "a.mesh:1: the version is 5; it must be 1 to 4: save it as version 2"},
+    {"Dimension\n3", "Dimension\n2",
+     "a.mesh:4: the dimension is 2; it must be 3: a volume mesh has points in space"},
+    {"Tetrahedra\n2", "TetrahedraP2\n1",
+     "a.mesh:17: a second-order tetrahedron (MEDIT section TetrahedraP2) cannot be used...export "
+     "linear elements..."},
+    {"Tetrahedra\n2", "Corners\n10", "...holds no cells at all..."},
+    {"\nEnd", "\nVertices 0\nEnd", "...second section Vertices..."},
+    {"", "MeshVersionFormatted 2\nEnd\n", "...has no section Vertices..."},
+};
 
-TEST(MeditReader, RefusesCountsThatTheFileCannotHold) {
-    EXPECT_THAT(medit_refusal_with("Vertices\n5", "Vertices\n4000000000"),
-                AllOf(StartsWith("liver.mesh:8: the number of vertices is 4000000000"),
-                      HasSubstr("more than can be in the remaining")));
-    EXPECT_THAT(medit_refusal_with("Tetrahedra\n2", "Tetrahedra\n18446744073709551615"),
-                StartsWith("liver.mesh:17: the number of rows of Tetrahedra is 1844674407370955"));
-    EXPECT_THAT(medit_refusal_with("Vertices\n5", "Vertices\n-5"), HasSubstr("found '-5'"));
-    EXPECT_EQ(medit_refusal_with("Vertices\n5", "Vertices\n4"),
-              "liver.mesh:13: expected a keyword behind the rows of the section before, found '1'");
-    EXPECT_EQ(medit_refusal_with("Tetrahedra\n2", "Tetrahedra\n3"),
-              "liver.mesh:21: expected a vertex, found 'Corners'");
-}
-
-TEST(MeditReader, RefusesWhatIsNoNumber) {
-    EXPECT_EQ(medit_refusal_with("0  1  0    0", "0  nan  0    0"),
-              "liver.mesh:11: a y coordinate is nan; it must be finite");
-    EXPECT_THAT(medit_refusal_with("0  1  0    0", "0  1  -inf    0"),
-                HasSubstr("z coordinate is -inf"));
-    EXPECT_THAT(medit_refusal_with("0  1  0    0", "0  1,5  0    0"), HasSubstr("found '1,5'"));
-    EXPECT_EQ(medit_refusal_with("4  10", "4  1e10"),
-              "liver.mesh:18: expected a reference, a whole number of 32 bits, found '1e10'");
-    EXPECT_THAT(
-        medit_refusal_with("4  10", "4  3000000000"),
-        HasSubstr("of 32 bits, found '3000000000', which is out of range: -2147483648 to "));
-    EXPECT_THAT(medit_refusal_with("Vertices\n5", "Vertices\n18446744073709551617"),
-                HasSubstr("expected the number of vertices, found '18446744073709551617', which is "
-                          "out of range: 0 to 18446744073709551615 are allowed"));
-}
-
-TEST(MeditReader, RefusesWhatItCannotRead) {
-    EXPECT_EQ(medit_refusal_with("Formatted 1", "Formatted 5"),
-              "liver.mesh:1: the version is 5; it must be 1 to 4: save it as version 2");
-    EXPECT_EQ(medit_refusal_with("Dimension\n3", "Dimension\n2"),
-              "liver.mesh:4: the dimension is 2; it must be 3: a volume mesh has points in space");
-    EXPECT_THAT(medit_refusal_with("Tetrahedra\n2", "TetrahedraP2\n1"),
-                AllOf(StartsWith("liver.mesh:17: a second-order tetrahedron (MEDIT section "
-                                 "TetrahedraP2) cannot be used"),
-                      HasSubstr("export linear elements")));
-    EXPECT_THAT(medit_refusal_with("Tetrahedra\n2", "Corners\n10"),
-                HasSubstr("holds no cells at all"));
-    EXPECT_THAT(medit_refusal_with("\nEnd", "\nVertices 0\nEnd"),
-                HasSubstr("second section Vertices"));
-    EXPECT_THAT(refusal("a.mesh", "MeshVersionFormatted 2\nEnd\n"),
-                HasSubstr("has no section Vertices"));
-}
+TEST(MeditReader, RefusesFaultyFiles) { expect_refusals("a.mesh", medit_tetrahedra, medit_faults); }
 
 }  // namespace
 }  // namespace incise::io

@@ -258,11 +258,11 @@ TEST(MeshReader, NamesTheFilesOfAnIndex) {
         const auto several = refusal_of({"frames/a_0.vtu", "frames/a_1.vtu", "/b/a_2.vtu"});
         EXPECT_THAT(several, StartsWith("liver" + suffix +
                                         ": holds no mesh itself but names 3 files, from "));
-        EXPECT_THAT(several, HasSubstr("/frames/a_0.vtu to /b/a_2.vtu"));
+        EXPECT_THAT(several, HasSubstr(" from frames/a_0.vtu to /b/a_2.vtu"));
         EXPECT_THAT(several, HasSubstr(suffix == ".pvtu" ? "which are parts of one mesh; save them "
                                                            "as one .vtu"
                                                          : "; give one of them"));
-        EXPECT_THAT(refusal_of({"a.vtu"}), testing::EndsWith("/a.vtu; give that one"));
+        EXPECT_THAT(refusal_of({"a.vtu"}), testing::EndsWith(" a.vtu; give that one"));
         EXPECT_THAT(refusal_of({}),
                     StartsWith("liver" + suffix + ": is an index of other files and names none; "));
     }

@@ -23,7 +23,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "incise/base/error.h"
+#include "tests/io/refusals.h"
 #include "tests/support/temporary_folder.h"
 
 namespace incise::io {
@@ -317,18 +317,7 @@ MeshFile read_bytes(const std::string& name, std::string_view bytes, const ReadO
 }
 
 std::string refusal(const std::string& name, std::string_view bytes, const ReadOptions& options) {
-    const support::TemporaryFolder folder;
-    std::ofstream(folder / name, std::ios::binary) << bytes;
-    try {
-        read_mesh(folder / name, options);
-    } catch (const InputError& error) {
-        const std::string message = error.what();
-        const auto prefix = folder.path().string() + "/";
-        EXPECT_TRUE(message.starts_with(prefix + name + ":")) << message;
-        return message.substr(std::min(prefix.size(), message.size()));
-    }
-    ADD_FAILURE() << name << " was not refused";
-    return {};
+    return refusal_by([&](const auto& path) { read_mesh(path, options); }, name, bytes);
 }
 
 std::string replaced(std::string text, std::string_view from, std::string_view to) {

@@ -22,7 +22,9 @@
 #include "incise/io/surface/ply_reader.h"
 #include "incise/io/surface/stl_reader.h"
 #include "tests/io/reader_samples.h"
+#include "tests/io/refusals.h"
 #include "tests/io/surface_samples.h"
+#include "tests/support/mutation.h"
 #include "tests/support/temporary_folder.h"
 
 namespace incise::io {
@@ -41,20 +43,8 @@ SurfaceFile read(const std::string& name, std::string_view bytes) {
     return read_surface(folder / name);
 }
 
-/// The message with which the bytes are refused, without the folder.
 std::string surface_refusal(const std::string& name, std::string_view bytes) {
-    const support::TemporaryFolder folder;
-    std::ofstream(folder / name, std::ios::binary) << bytes;
-    try {
-        read_surface(folder / name);
-    } catch (const InputError& error) {
-        const std::string message = error.what();
-        const auto prefix = folder.path().string() + "/";
-        EXPECT_TRUE(message.starts_with(prefix + name + ":")) << message;
-        return message.substr(std::min(prefix.size(), message.size()));
-    }
-    ADD_FAILURE() << name << " was not refused";
-    return {};
+    return refusal_by([](const auto& path) { read_surface(path); }, name, bytes);
 }
 
 // --- What all formats share
@@ -140,10 +130,6 @@ TEST(SurfaceReader, RefusesCoordinatesThatAreNoNumbers) {
                               HasSubstr("it must be a number from -1e100 to 1e100")));
         }
     }
-    EXPECT_THAT(surface_refusal("a.obj", "v 0 0 0\nv 0 0 -1e101\n"),
-                StartsWith("a.obj:2: coordinate z of point 1 is -1e+101; it must be"));
-    EXPECT_THAT(surface_refusal("a.obj", "v 0 1e999 0\n"),
-                StartsWith("a.obj:1: expected coordinate y, found '1e999'"));
 }
 
 TEST(SurfaceReader, RefusesWhatIsNoSurfaceFile) {
@@ -169,40 +155,38 @@ TEST(StlReader, MergesEqualPointsWhateverTheSignOfZero) {
         for (const double x : point) EXPECT_FALSE(std::signbit(x));
 }
 
-TEST(StlReader, RefusesBinaryFilesOfTheWrongSize) {
+const std::vector<Fault> stl_faults = {
+    {"facet", "facets", "a.stl:2: expected 'facet' or 'endsolid', found 'facets'..."},
+    {"normal", "n", "a.stl:2: expected 'normal', found 'n'..."},
+    {"outer", "o", "a.stl:3: expected 'outer loop', found 'o'..."},
+    {"vertex 0 0 0", "endloop",
+     "a.stl:4: expected 'vertex' (a facet has three), found 'endloop'..."},
+    {"endloop", "vertex", "...'endloop' (a facet has three vertices)..."},
+    {"vertex 0 0 0", "vertex 0 zero 0", "a.stl:4: expected coordinate y, found 'zero'..."},
+};
+
+TEST(StlReader, RefusesFaultyFiles) {
+    const auto text = ascii_stl(tetrahedron().triangulated());
+    expect_refusals(surface_refusal, "a.stl", text, stl_faults);
     const auto bytes = binary_stl(cube().triangulated());
-    EXPECT_THAT(surface_refusal("a.stl", bytes.substr(0, 683)),
-                AllOf(StartsWith("a.stl: byte 80: the number of triangles is 12, for which a "
-                                 "binary file has 684 bytes; this one has 683"),
-                      HasSubstr("cut short")));
-    EXPECT_THAT(surface_refusal("a.stl", bytes + "x"),
-                AllOf(HasSubstr("this one has 685"), HasSubstr("something behind the triangles")));
-    EXPECT_THAT(surface_refusal("a.stl", binary_stl(cube().triangulated(), "solid") + "x"),
-                HasSubstr("this one has 685"));
-    EXPECT_THAT(surface_refusal("a.stl", "sol"), HasSubstr("a.stl: byte 0: is no STL file"));
     auto many = bytes;
     many.replace(80, 4, "\xFF\xFF\xFF\xFF");
-    EXPECT_THAT(surface_refusal("a.stl", many), HasSubstr("the number of triangles is 4294967295"));
-}
-
-TEST(StlReader, RefusesWrongWords) {
-    const auto text = ascii_stl(tetrahedron().triangulated());
-    const auto refused = [&](std::string_view from, std::string_view to) {
-        return surface_refusal("a.stl", replaced(text, from, to));
-    };
-    EXPECT_THAT(refused("facet", "facets"),
-                StartsWith("a.stl:2: expected 'facet' or 'endsolid', found 'facets'"));
-    EXPECT_THAT(refused("normal", "n"), StartsWith("a.stl:2: expected 'normal', found 'n'"));
-    EXPECT_THAT(refused("outer", "o"), StartsWith("a.stl:3: expected 'outer loop', found 'o'"));
-    EXPECT_THAT(refused("vertex 0 0 0", "endloop"),
-                StartsWith("a.stl:4: expected 'vertex' (a facet has three), found 'endloop'"));
-    EXPECT_THAT(refused("endloop", "vertex"), HasSubstr("'endloop' (a facet has three vertices)"));
-    EXPECT_THAT(refused("vertex 0 0 0", "vertex 0 zero 0"),
-                StartsWith("a.stl:4: expected coordinate y, found 'zero'"));
-    EXPECT_THAT(surface_refusal("a.stl", text.substr(0, text.rfind("endsolid"))),
-                HasSubstr("the file ends where 'facet' or 'endsolid' was expected"));
-    EXPECT_THAT(surface_refusal("a.stl", text + "v 0 0 0\n"),
-                StartsWith("a.stl:31: expected 'solid' or the end of the file, found 'v'"));
+    expect_refusals(
+        surface_refusal, "a.stl", "",
+        {
+            {"", text.substr(0, text.rfind("endsolid")),
+             "...the file ends where 'facet' or 'endsolid' was expected..."},
+            {"", text + "v 0 0 0\n",
+             "a.stl:31: expected 'solid' or the end of the file, found 'v'..."},
+            // Binary files of the wrong size.
+            {"", bytes.substr(0, 683),
+             "a.stl: byte 80: the number of triangles is 12, for which a binary file has 684 "
+             "bytes; this one has 683...cut short..."},
+            {"", bytes + "x", "...this one has 685...something behind the triangles..."},
+            {"", binary_stl(cube().triangulated(), "solid") + "x", "...this one has 685..."},
+            {"", "sol", "a.stl: byte 0: is no STL file..."},
+            {"", many, "...the number of triangles is 4294967295..."},
+        });
 }
 
 // --- OBJ
@@ -217,31 +201,30 @@ TEST(ObjReader, ReadsFacesBeforeTheirPointsAndContinuedLines) {
         3u);
 }
 
-TEST(ObjReader, RefusesWrongIndices) {
-    const std::string points = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
-    const auto refused = [&](const std::string& face) {
-        return surface_refusal("a.obj", points + face + "\n");
-    };
-    EXPECT_THAT(refused("f 1 2 3\nf 1 2 4\nf 1 2 3"),
-                StartsWith("a.obj:5: point index 4 is out of range (3 points, numbered from 1)"));
-    EXPECT_THAT(refused("f 1 2 0"), StartsWith("a.obj:4: point index 0 is out of range (3 points"));
-    EXPECT_THAT(refused("f 1 2 -4"), StartsWith("a.obj:4: point index -4 is out of range (3 poi"));
-    EXPECT_THAT(refused("f 1 2 9223372036854775807"), HasSubstr("9223372036854775807 is out of"));
-    EXPECT_THAT(refused("f 1 2 -9223372036854775808"), HasSubstr("-9223372036854775808 is out"));
-    EXPECT_THAT(refused("f 1 2 99999999999999999999"),
-                StartsWith("a.obj:4: expected a point index, found '99999999999999999999'"));
-    EXPECT_THAT(refused("f 1 2 /3"), HasSubstr("expected a point index, found '/3'"));
-    EXPECT_THAT(refused("f 1 2.5 3"), HasSubstr("expected a point index, found '2.5'"));
-    EXPECT_THAT(refused("f 1 2"), StartsWith("a.obj:4: a face has 2 corners; it must have at le"));
-}
+const std::vector<Fault> obj_faults = {
+    // Wrong statements and coordinates.
+    {"", "v 0 0 0\nsurf 0 1 0 1\n",
+     "a.obj:2: 'surf' is not a statement known here; export polygons..."},
+    {"", "v 0 0\n", "a.obj:1: point 0 has 2 coordinates; it must have 3..."},
+    {"", "v 0 0 x\n", "a.obj:1: expected coordinate z, found 'x'..."},
+    {"", "v 0 1e999 0\n", "a.obj:1: expected coordinate y, found '1e999'..."},
+    {"", "v 0 0 0\nv 0 0 -1e101\n", "a.obj:2: coordinate z of point 1 is -1e+101; it must be..."},
+    // Wrong indices.
+    {"f 1 2 3", "f 1 2 3\nf 1 2 4\nf 1 2 3",
+     "a.obj:5: point index 4 is out of range (3 points, numbered from 1)..."},
+    {"f 1 2 3", "f 1 2 0", "a.obj:4: point index 0 is out of range (3 points..."},
+    {"f 1 2 3", "f 1 2 -4", "a.obj:4: point index -4 is out of range (3 poi..."},
+    {"f 1 2 3", "f 1 2 9223372036854775807", "...9223372036854775807 is out of..."},
+    {"f 1 2 3", "f 1 2 -9223372036854775808", "...-9223372036854775808 is out..."},
+    {"f 1 2 3", "f 1 2 99999999999999999999",
+     "a.obj:4: expected a point index, found '99999999999999999999'..."},
+    {"f 1 2 3", "f 1 2 /3", "...expected a point index, found '/3'..."},
+    {"f 1 2 3", "f 1 2.5 3", "...expected a point index, found '2.5'..."},
+    {"f 1 2 3", "f 1 2", "a.obj:4: a face has 2 corners; it must have at le..."},
+};
 
-TEST(ObjReader, RefusesWrongStatements) {
-    EXPECT_THAT(surface_refusal("a.obj", "v 0 0 0\nsurf 0 1 0 1\n"),
-                StartsWith("a.obj:2: 'surf' is not a statement known here; export polygons"));
-    EXPECT_THAT(surface_refusal("a.obj", "v 0 0\n"),
-                StartsWith("a.obj:1: point 0 has 2 coordinates; it must have 3"));
-    EXPECT_THAT(surface_refusal("a.obj", "v 0 0 x\n"),
-                StartsWith("a.obj:1: expected coordinate z, found 'x'"));
+TEST(ObjReader, RefusesFaultyFiles) {
+    expect_refusals(surface_refusal, "a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", obj_faults);
 }
 
 // --- OFF
@@ -252,35 +235,31 @@ TEST(OffReader, AcceptsCountsBehindTheKeywordWithoutEdges) {
         EXPECT_EQ(read("a.off", head + body).surface.triangles.size(), 1u) << head;
 }
 
-TEST(OffReader, RefusesWhatItCannotRead) {
-    const std::string text = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    const auto refused = [&](std::string_view from, std::string_view to) {
-        return surface_refusal("a.off", replaced(text, from, to));
-    };
-    EXPECT_THAT(refused("OFF", "ON"), StartsWith("a.off:1: expected OFF, found 'ON'"));
-    EXPECT_THAT(refused("OFF", "4OFF"), StartsWith("a.off:1: '4OFF' cannot be read; save as OFF"));
-    EXPECT_THAT(refused("OFF", "OFF BINARY"), StartsWith("a.off:1: is binary OFF"));
-    EXPECT_THAT(refused("3 1 0", "3"),
-                StartsWith("a.off:2: expected the numbers of points, faces"));
-    EXPECT_THAT(refused("3 1 0", "-3 1 0"), HasSubstr("expected the number of points, found '-3'"));
-    EXPECT_THAT(refused("3 1 0", "3000000000 1 0"),
-                AllOf(StartsWith("a.off:2: the number of points is 3000000000, more than can be"),
-                      HasSubstr("cut short or damaged")));
-    EXPECT_THAT(refused("3 1 0", "3 99 0"), HasSubstr("the number of faces is 99, more than"));
-    EXPECT_THAT(refused("1 0 0\n", "1 0\n"), StartsWith("a.off:4: point 1 has 2 coordinates"));
-    EXPECT_THAT(refused("3 0 1 2", "3 0 1 3"),
-                StartsWith("a.off:6: point index 3 is out of range (3 points, numbered from 0)"));
-    EXPECT_THAT(refused("3 0 1 2", "3 0 1 -1"), HasSubstr("point index -1 is out of range"));
-    EXPECT_THAT(refused("3 0 1 2", "3 0 1 b"), HasSubstr("expected a point index, found 'b'"));
-    EXPECT_THAT(refused("3 0 1 2", "4 0 1 2"),
-                StartsWith("a.off:6: a face has 4 corners, but its line has 3 numbers for them"));
-    EXPECT_THAT(refused("3 0 1 2", "2 0 1 2"),
-                StartsWith("a.off:6: a face has 2 corners; it must"));
-    EXPECT_THAT(refused("3 0 1 2", "x 0 1 2"), HasSubstr("number of corners of a face, found 'x'"));
-    EXPECT_THAT(refused("3 0 1 2\n", "3 0 1 2\n3 0 2 1\n"),
-                StartsWith("a.off:7: expected the end of the file behind 1 faces, found '3'"));
-    EXPECT_THAT(surface_refusal("a.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0 1 1 1 1 1 1\n"),
-                HasSubstr("the file ends where a point was expected; it is cut short"));
+const std::vector<Fault> off_faults = {
+    {"OFF", "ON", "a.off:1: expected OFF, found 'ON'..."},
+    {"OFF", "4OFF", "a.off:1: '4OFF' cannot be read; save as OFF..."},
+    {"OFF", "OFF BINARY", "a.off:1: is binary OFF..."},
+    {"3 1 0", "3", "a.off:2: expected the numbers of points, faces..."},
+    {"3 1 0", "-3 1 0", "...expected the number of points, found '-3'..."},
+    {"3 1 0", "3000000000 1 0",
+     "a.off:2: the number of points is 3000000000, more than can be...cut short or damaged..."},
+    {"3 1 0", "3 99 0", "...the number of faces is 99, more than..."},
+    {"1 0 0\n", "1 0\n", "a.off:4: point 1 has 2 coordinates..."},
+    {"3 0 1 2", "3 0 1 3", "a.off:6: point index 3 is out of range (3 points, numbered from 0)..."},
+    {"3 0 1 2", "3 0 1 -1", "...point index -1 is out of range..."},
+    {"3 0 1 2", "3 0 1 b", "...expected a point index, found 'b'..."},
+    {"3 0 1 2", "4 0 1 2", "a.off:6: a face has 4 corners, but its line has 3 numbers for them..."},
+    {"3 0 1 2", "2 0 1 2", "a.off:6: a face has 2 corners; it must..."},
+    {"3 0 1 2", "x 0 1 2", "...number of corners of a face, found 'x'..."},
+    {"3 0 1 2\n", "3 0 1 2\n3 0 2 1\n",
+     "a.off:7: expected the end of the file behind 1 faces, found '3'..."},
+    {"", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0 1 1 1 1 1 1\n",
+     "...the file ends where a point was expected; it is cut short..."},
+};
+
+TEST(OffReader, RefusesFaultyFiles) {
+    expect_refusals(surface_refusal, "a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+                    off_faults);
 }
 
 // --- PLY
@@ -300,78 +279,66 @@ end_header
 3 0 1 2
 )";
 
-std::string ply_refusal(std::string_view from, std::string_view to) {
-    return surface_refusal("a.ply", replaced(triangle_ply, from, to));
-}
-
 TEST(PlyReader, ReadsPlainFilesAndWholeCoordinates) {
     EXPECT_EQ(read("a.ply", triangle_ply).surface.triangles.size(), 1u);
     const auto file = read("a.ply", replaced(triangle_ply, "property float y", "property short y"));
     EXPECT_EQ(file.surface.points[2], Vec3(0, 1, 0));
 }
 
-TEST(PlyReader, RefusesWrongHeaders) {
-    EXPECT_THAT(ply_refusal("ply", "ply 1"), StartsWith("a.ply:1: expected 'ply' alone"));
-    EXPECT_THAT(ply_refusal("format ascii 1.0\n", ""), HasSubstr("has no line 'format'"));
-    EXPECT_THAT(ply_refusal("ascii", "text"),
-                StartsWith("a.ply:2: expected ascii, binary_little_endian or binary_big_endian, "
-                           "found 'text'"));
-    EXPECT_THAT(ply_refusal("1.0", "2.0"), StartsWith("a.ply:2: version '2.0' cannot be read"));
-    EXPECT_THAT(ply_refusal("1.0\n", "1.0\nformat ascii 1.0\n"),
-                StartsWith("a.ply:3: the header has a second line 'format'"));
-    EXPECT_THAT(ply_refusal("element vertex 3", "element vertex"),
-                StartsWith("a.ply:3: expected 'element <name> <count>', found 2 words"));
-    EXPECT_THAT(ply_refusal("vertex 3", "vertex -3"),
-                StartsWith("a.ply:3: expected a count of elements, found '-3'"));
-    EXPECT_THAT(ply_refusal("element vertex 3\n", ""),
-                StartsWith("a.ply:3: a property comes before the first element"));
-    EXPECT_THAT(ply_refusal("float x", "half x"),
-                AllOf(StartsWith("a.ply:4: type 'half' is not one of: char, int8, uchar")));
-    EXPECT_THAT(ply_refusal("uchar int", "float int"),
-                StartsWith("a.ply:8: the length of list 'vertex_index' has type 'float'"));
-    EXPECT_THAT(ply_refusal("list uchar", "list"), HasSubstr("found 4 words"));
-    EXPECT_THAT(ply_refusal("end_header", "done"), StartsWith("a.ply:9: 'done' is not a keyword"));
-    EXPECT_THAT(surface_refusal("a.ply", triangle_ply.substr(0, triangle_ply.find("end_header"))),
-                HasSubstr("the file ends before 'end_header'; it is cut short"));
-}
+const std::vector<Fault> ply_faults = {
+    // Wrong headers.
+    {"ply", "ply 1", "a.ply:1: expected 'ply' alone..."},
+    {"format ascii 1.0\n", "", "...has no line 'format'..."},
+    {"ascii", "text",
+     "a.ply:2: expected ascii, binary_little_endian or binary_big_endian, found 'text'..."},
+    {"1.0", "2.0", "a.ply:2: version '2.0' cannot be read..."},
+    {"1.0\n", "1.0\nformat ascii 1.0\n", "a.ply:3: the header has a second line 'format'..."},
+    {"element vertex 3", "element vertex",
+     "a.ply:3: expected 'element <name> <count>', found 2 words..."},
+    {"vertex 3", "vertex -3", "a.ply:3: expected a count of elements, found '-3'..."},
+    {"element vertex 3\n", "", "a.ply:3: a property comes before the first element..."},
+    {"float x", "half x", "a.ply:4: type 'half' is not one of: char, int8, uchar..."},
+    {"uchar int", "float int", "a.ply:8: the length of list 'vertex_index' has type 'float'..."},
+    {"list uchar", "list", "...found 4 words..."},
+    {"end_header", "done", "a.ply:9: 'done' is not a keyword..."},
+    // Headers without a surface.
+    {"element vertex", "element point",
+     "a.ply:9: the header has 0 elements 'vertex'; it must have 1..."},
+    {"element face 1", "element vertex 1", "...has 2 elements 've..."},
+    {"element face", "element tristrips", "...0 elements 'face'..."},
+    {"float y", "float u", "...'vertex' has no property 'y'..."},
+    {"float y", "float x", "...'vertex' has a second property 'x'..."},
+    {"float y", "list int int y",
+     "...property 'y' of element 'vertex' must be a number, not a list..."},
+    {"list uchar int", "int",
+     "...'vertex_index' of element 'face' must be a list of whole numbers..."},
+    {"list uchar int", "list uchar float", "...must be a list of..."},
+    {"vertex_index", "corners", "...element 'face' has no property 'vertex_indices'..."},
+    // Wrong data.
+    {"vertex 3", "vertex 3000000000",
+     "...the number of elements 'vertex' is 3000000000, more than can be..."},
+    {"face 1", "face 18446744073709551615", "...more than can be..."},
+    {"vertex 3", "vertex 2", "...a face has 0 corners..."},
+    {"1 0 0", "1 a 0", "a.ply:11: expected coordinate y, found 'a'..."},
+    {"3 0 1 2", "3 0 1 3",
+     "a.ply:13: point index 3 is out of range (3 points, numbered from 0)..."},
+    {"3 0 1 2", "3 0 1 -2", "...point index -2 is out of range..."},
+    {"3 0 1 2", "3 0 1 1.5", "...a point index, found '1.5'..."},
+    {"3 0 1 2", "256 0 1 2", "...length of a list, found '256'..."},
+    {"3 0 1 2", "200 0 1 2", "a.ply:13: the length of a list is 200, more than can be..."},
+    {"3 0 1 2", "2 0 1", "a.ply:13: a face has 2 corners..."},
+    {"3 0 1 2", "3 0 1", "...where a point index was expected..."},
+    {"3 0 1 2", "3 0 1 2 5",
+     "...2 bytes follow the last element; the counts of the header are wrong..."},
+    {"", triangle_ply.substr(0, triangle_ply.find("end_header")),
+     "...the file ends before 'end_header'; it is cut short..."},
+};
 
-TEST(PlyReader, RefusesHeadersWithoutASurface) {
-    EXPECT_THAT(ply_refusal("element vertex", "element point"),
-                StartsWith("a.ply:9: the header has 0 elements 'vertex'; it must have 1"));
-    EXPECT_THAT(ply_refusal("element face 1", "element vertex 1"), HasSubstr("has 2 elements 've"));
-    EXPECT_THAT(ply_refusal("element face", "element tristrips"), HasSubstr("0 elements 'face'"));
-    EXPECT_THAT(ply_refusal("float y", "float u"), HasSubstr("'vertex' has no property 'y'"));
-    EXPECT_THAT(ply_refusal("float y", "float x"), HasSubstr("'vertex' has a second property 'x'"));
-    EXPECT_THAT(ply_refusal("float y", "list int int y"),
-                HasSubstr("property 'y' of element 'vertex' must be a number, not a list"));
-    EXPECT_THAT(ply_refusal("list uchar int", "int"),
-                HasSubstr("'vertex_index' of element 'face' must be a list of whole numbers"));
-    EXPECT_THAT(ply_refusal("list uchar int", "list uchar float"), HasSubstr("must be a list of"));
-    EXPECT_THAT(ply_refusal("vertex_index", "corners"),
-                HasSubstr("element 'face' has no property 'vertex_indices'"));
-}
-
-TEST(PlyReader, RefusesWrongData) {
-    EXPECT_THAT(ply_refusal("vertex 3", "vertex 3000000000"),
-                HasSubstr("the number of elements 'vertex' is 3000000000, more than can be"));
-    EXPECT_THAT(ply_refusal("face 1", "face 18446744073709551615"), HasSubstr("more than can be"));
-    EXPECT_THAT(ply_refusal("vertex 3", "vertex 2"), HasSubstr("a face has 0 corners"));
-    EXPECT_THAT(ply_refusal("1 0 0", "1 a 0"),
-                StartsWith("a.ply:11: expected coordinate y, found 'a'"));
-    EXPECT_THAT(ply_refusal("3 0 1 2", "3 0 1 3"),
-                StartsWith("a.ply:13: point index 3 is out of range (3 points, numbered from 0)"));
-    EXPECT_THAT(ply_refusal("3 0 1 2", "3 0 1 -2"), HasSubstr("point index -2 is out of range"));
-    EXPECT_THAT(ply_refusal("3 0 1 2", "3 0 1 1.5"), HasSubstr("a point index, found '1.5'"));
-    EXPECT_THAT(ply_refusal("3 0 1 2", "256 0 1 2"), HasSubstr("length of a list, found '256'"));
-    EXPECT_THAT(ply_refusal("3 0 1 2", "200 0 1 2"),
-                StartsWith("a.ply:13: the length of a list is 200, more than can be"));
-    EXPECT_THAT(ply_refusal("3 0 1 2", "2 0 1"), StartsWith("a.ply:13: a face has 2 corners"));
-    EXPECT_THAT(ply_refusal("3 0 1 2", "3 0 1"), HasSubstr("where a point index was expected"));
-    EXPECT_THAT(ply_refusal("3 0 1 2", "3 0 1 2 5"),
-                HasSubstr("2 bytes follow the last element; the counts of the header are wrong"));
-    EXPECT_THAT(surface_refusal("a.ply", replaced(replaced(triangle_ply, "uchar", "char"),
-                                                  "3 0 1 2", "-3 0 1 2")),
-                HasSubstr("the length of list 'vertex_index' is -3; it must be 0 or more"));
+TEST(PlyReader, RefusesFaultyFiles) {
+    expect_refusals(surface_refusal, "a.ply", triangle_ply, ply_faults);
+    expect_refusals(surface_refusal, "a.ply", replaced(triangle_ply, "uchar", "char"),
+                    {{"3 0 1 2", "-3 0 1 2",
+                      "...the length of list 'vertex_index' is -3; it must be 0 or more..."}});
 }
 
 TEST(PlyReader, NamesBytesOfBinaryFiles) {
@@ -425,22 +392,13 @@ TEST(MutatedSurfaceFile, IsReadOrRefusedIfCutShort) {
 
 TEST(MutatedSurfaceFile, IsReadOrRefusedIfBytesChange) {
     constexpr int num_mutations = 3000;  // of each sample
-    constexpr std::string_view usual = "0123456789-.e \n/#\\";
     for (const auto& sample : surface_samples(cube())) {
         std::mt19937 random(12345);
-        const auto below = [&](std::size_t n) { return random() % n; };
         int num_refused = 0;
         for (int m = 0; m < num_mutations; ++m) {
             SCOPED_TRACE(sample.name + ", mutation " + std::to_string(m));
-            auto bytes = sample.bytes;
-            const auto num_changes = 1 + below(4);
-            for (std::size_t i = 0; i < num_changes; ++i) {
-                char& byte = bytes[below(bytes.size())];
-                const bool is_flip = below(2) == 0;
-                byte = is_flip ? static_cast<char>(byte ^ (1 << below(8)))
-                               : usual[below(usual.size())];
-            }
-            num_refused += is_refused({sample.name, bytes}) ? 1 : 0;
+            num_refused +=
+                is_refused({sample.name, support::mutated(sample.bytes, random)}) ? 1 : 0;
         }
         EXPECT_GT(num_refused, 0) << sample.name;
         EXPECT_LT(num_refused, num_mutations) << sample.name;

@@ -11,6 +11,7 @@
 
 #include "incise/base/error.h"
 #include "tests/io/reader_samples.h"
+#include "tests/io/refusals.h"
 #include "tests/support/temporary_folder.h"
 
 namespace incise::io {
@@ -45,7 +46,7 @@ const std::string element_file = R"(6  4  1
 )";
 
 MeshFile read_pair(const std::string& node_text, const std::string& element_text) {
-    return read_tetgen_pair({"liver.node", node_text}, {"liver.ele", element_text});
+    return read_tetgen_pair({"a.node", node_text}, {"a.ele", element_text});
 }
 
 std::string refusal_of(const std::string& node_text, const std::string& element_text) {
@@ -56,13 +57,6 @@ std::string refusal_of(const std::string& node_text, const std::string& element_
     }
     return "not refused";
 }
-std::string refusal_of_nodes(std::string_view from, std::string_view to) {
-    return refusal_of(replaced(node_file, from, to), element_file);
-}
-std::string refusal_of_elements(std::string_view from, std::string_view to) {
-    return refusal_of(node_file, replaced(element_file, from, to));
-}
-
 double volume(const topology::MeshData& mesh) {
     double sum = 0;
     for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
@@ -124,45 +118,61 @@ TEST(TetgenReader, TakesTheFirstAttributeAsTheRegion) {
     const auto file = read_pair(node_file, "1 4 2\n1 1 4 8 3 -3.0 0.25\n");
     EXPECT_THAT(file.mesh.regions, ElementsAre(-3));
     EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("elements have 2 attributes; the first")));
-    EXPECT_THAT(refusal_of(node_file, "1 4 1\n1 1 4 8 3 0.25\n"),
-                StartsWith("liver.ele:2: attribute 0.25 is taken as the region, but is no whole"));
-    EXPECT_THAT(refusal_of(node_file, "1 4 1\n1 1 4 8 3 nan\n"), HasSubstr("attribute nan"));
-    EXPECT_THAT(refusal_of(node_file, "1 4 1\n1 1 4 8 3 2147483648\n"), HasSubstr("of 32 bits"));
 }
 
-TEST(TetgenReader, RefusesUnknownNodes) {
-    EXPECT_EQ(refusal_of_elements("7     1     3     2", "7     1     3   927"),
-              "liver.ele:7: element 6: node 927 is not one of the 8 nodes in liver.node");
-    EXPECT_THAT(refusal_of_elements("7     1     3     2", "7     1     3   0"),
-                HasSubstr("node 0 is not one"));
-    EXPECT_EQ(refusal_of_nodes("   8    0", "   7    0"),
-              "liver.node: index 7 is given to two nodes, the nodes number 7 and 8 in the order of "
-              "the file; give each node one of its own");
-}
+const std::vector<Fault> tetgen_element_faults = {
+    // Unknown nodes.
+    {"7     1     3     2", "7     1     3   927",
+     "a.ele:7: element 6: node 927 is not one of the 8 nodes in a.node"},
+    {"7     1     3     2", "7     1     3   0", "...node 0 is not one..."},
+    // Counts that the file cannot hold.
+    {"6  4", "18446744073709551615  4",
+     "a.ele:1: the number of elements is 18446744073709551615..."},
+    {"6  4", "7  4", "...the file ends where an element..."},
+    {"6  4", "5  4", "...behind 5 elements..."},
+    {"", "0 4 0", "...a.ele: holds no cells at all..."},
+    // Elements of other than the announced columns.
+    {"", "1 4 1\n1 1 4 8 3\n",
+     "a.ele:2: expected an index, 4 nodes and 1 attributes, as the first line has it, found 5 "
+     "columns"},
+    {"", "1 4 1\n1 1 4 8 3 5 2 6 7 1 2\n",
+     "...a.ele:2: expected an index, 4 nodes and 1 attributes..."},
+    {"", "1 4 4294967295\n1 1 4 8 3 10\n",
+     "...4294967295 attributes, as the first line has it, found 6 columns..."},
+    // Attributes that are no regions.
+    {"", "1 4 1\n1 1 4 8 3 0.25\n",
+     "a.ele:2: attribute 0.25 is taken as the region, but is no whole..."},
+    {"", "1 4 1\n1 1 4 8 3 nan\n", "...attribute nan..."},
+    {"", "1 4 1\n1 1 4 8 3 2147483648\n", "...of 32 bits..."},
+    // What cannot be read.
+    {"6  4  1", "6  10  1",
+     "a.ele:1: a second-order tetrahedron (number of nodes 10)...export linear elements..."},
+    {"6  4  1", "6  8  1", "a.ele:1: elements have 8 nodes; they must have 4"},
+};
 
-TEST(TetgenReader, RefusesCountsThatTheFileCannotHold) {
-    EXPECT_THAT(refusal_of_nodes("8  3", "4000000000  3"),
-                AllOf(StartsWith("liver.node:1: the number of nodes is 4000000000"),
-                      HasSubstr("more than can be in the remaining")));
-    EXPECT_THAT(refusal_of_elements("6  4", "18446744073709551615  4"),
-                StartsWith("liver.ele:1: the number of elements is 18446744073709551615"));
-    EXPECT_THAT(refusal_of_nodes("8  3", "-8  3"), HasSubstr("found '-8'"));
-    EXPECT_EQ(refusal_of_nodes("8  3", "7  3"),
-              "liver.node:9: expected the end of the file behind 7 nodes, found '8'");
-    EXPECT_THAT(refusal_of_nodes("8  3", "9  3"), HasSubstr("the file ends where a node was"));
-    EXPECT_THAT(refusal_of_elements("6  4", "7  4"), HasSubstr("the file ends where an element"));
-    EXPECT_THAT(refusal_of_elements("6  4", "5  4"), HasSubstr("behind 5 elements"));
-    EXPECT_THAT(refusal_of(node_file, "0 4 0"), HasSubstr("liver.ele: holds no cells at all"));
-}
+const std::vector<Fault> tetgen_node_faults = {
+    // Unknown nodes.
+    {"   8    0", "   7    0",
+     "a.node: index 7 is given to two nodes, the nodes number 7 and 8 in the order of the file; "
+     "give each node one of its own"},
+    // Counts that the file cannot hold.
+    {"8  3", "4000000000  3",
+     "a.node:1: the number of nodes is 4000000000...more than can be in the remaining..."},
+    {"8  3", "-8  3", "...found '-8'..."},
+    {"8  3", "7  3", "a.node:9: expected the end of the file behind 7 nodes, found '8'"},
+    {"8  3", "9  3", "...the file ends where a node was..."},
+    // What cannot be read.
+    {"8  3", "8  2", "a.node:1: the dimension is 2; it must be 3"},
+    {"3    1  1  0", "3    1  nan  0", "a.node:4: coordinate y is nan; it must be finite"},
+    {"3    1  1  0", "3    1  1,0  0", "a.node:4: expected coordinate y, found '1,0'..."},
+    {"3    1  1  0", "3    1  1", "a.node:4: coordinate z is missing: the line has 3 numbers"},
+};
 
-TEST(TetgenReader, RefusesElementsOfOtherThanTheAnnouncedColumns) {
-    EXPECT_EQ(refusal_of(node_file, "1 4 1\n1 1 4 8 3\n"),
-              "liver.ele:2: expected an index, 4 nodes and 1 attributes, as the first line has it, "
-              "found 5 columns");
-    EXPECT_THAT(refusal_of(node_file, "1 4 1\n1 1 4 8 3 5 2 6 7 1 2\n"),
-                HasSubstr("liver.ele:2: expected an index, 4 nodes and 1 attributes"));
-    EXPECT_THAT(refusal_of(node_file, "1 4 4294967295\n1 1 4 8 3 10\n"),
-                HasSubstr("4294967295 attributes, as the first line has it, found 6 columns"));
+TEST(TetgenReader, RefusesFaultyFiles) {
+    expect_refusals([](auto&, auto& nodes) { return refusal_of(nodes, element_file); }, "a.node",
+                    node_file, tetgen_node_faults);
+    expect_refusals([](auto&, auto& elements) { return refusal_of(node_file, elements); }, "a.ele",
+                    element_file, tetgen_element_faults);
 }
 
 TEST(TetgenReader, RefusesNodesOfOtherThanTheAnnouncedColumns) {
@@ -177,24 +187,26 @@ TEST(TetgenReader, RefusesNodesOfOtherThanTheAnnouncedColumns) {
           // What the first line leaves out may be there.
           std::pair{"", " 1"}, std::pair{"", " 0.5 1e3 7"}, std::pair{" 2", " 0.5 1e3 7"}})
         EXPECT_EQ(read_pair(nodes(header, more), element).mesh.points.size(), 4u) << header;
-    for (const auto& [header, more] :
-         {std::pair{" 2", " 1"}, std::pair{" 0 0", " 1"}, std::pair{" 0 1", ""},
-          std::pair{" 0 1", " 1 1"}, std::pair{" 1 1", " 1"}, std::pair{" 1 0", ""}})
-        EXPECT_THAT(refusal_of(nodes(header, more), element),
-                    AllOf(StartsWith("liver.node:2: expected an index, 3 coordinates, "),
-                          HasSubstr(" columns")))
-            << header;
-    EXPECT_EQ(refusal_of(nodes(" 3 1", ""), element),
-              "liver.node:2: expected an index, 3 coordinates, 3 attributes and 1 markers, as the "
-              "first line has it, found 4 columns");
-    EXPECT_EQ(refusal_of(nodes(" 2", " 1"), element),
-              "liver.node:2: expected an index, 3 coordinates, 2 attributes, as the first line has "
-              "it, found 5 columns");
-    EXPECT_EQ(refusal_of(nodes(" 999999999999 0", ""), element),
-              "liver.node:1: expected the number of attributes, found '999999999999', which is out "
-              "of range: 0 to 4294967295 are allowed");
-    EXPECT_EQ(refusal_of(nodes(" 0 2", ""), element),
-              "liver.node:1: the number of boundary markers is 2; it must be 0 or 1");
+    constexpr auto wrong = "a.node:2: expected an index, 3 coordinates, ... columns...";
+    expect_refusals([&](auto&, auto& text) { return refusal_of(text, element); }, "a.node", "",
+                    {
+                        {"", nodes(" 0 0", " 1"), wrong},
+                        {"", nodes(" 0 1", ""), wrong},
+                        {"", nodes(" 0 1", " 1 1"), wrong},
+                        {"", nodes(" 1 1", " 1"), wrong},
+                        {"", nodes(" 1 0", ""), wrong},
+                        {"", nodes(" 3 1", ""),
+                         "a.node:2: expected an index, 3 coordinates, 3 attributes and 1 markers, "
+                         "as the first line has it, found 4 columns"},
+                        {"", nodes(" 2", " 1"),
+                         "a.node:2: expected an index, 3 coordinates, 2 attributes, as the first "
+                         "line has it, found 5 columns"},
+                        {"", nodes(" 999999999999 0", ""),
+                         "a.node:1: expected the number of attributes, found '999999999999', which "
+                         "is out of range: 0 to 4294967295 are allowed"},
+                        {"", nodes(" 0 2", ""),
+                         "a.node:1: the number of boundary markers is 2; it must be 0 or 1"},
+                    });
 }
 
 TEST(TetgenReader, RefusesEveryFileThatIsCutShort) {
@@ -210,8 +222,8 @@ TEST(TetgenReader, ReadsSecondOrderTetrahedraByTheirCorners) {
     for (int i = 0; i < 7; ++i) rows += std::to_string(i) + " 5 5 " + std::to_string(i) + "\n";
     for (int i = 0; i < 6; ++i) element += " " + std::to_string(i);
     const auto file =
-        read_tetgen_pair({"liver.node", nodes + rows + "7 0 0 0\n8 1 0 0\n9 0 1 0\n10 0 0 1\n"},
-                         {"liver.ele", element + " 3\n"}, {.linear = true});
+        read_tetgen_pair({"a.node", nodes + rows + "7 0 0 0\n8 1 0 0\n9 0 1 0\n10 0 0 1\n"},
+                         {"a.ele", element + " 3\n"}, {.linear = true});
     // Node 6 belongs to no element at all, and is left to the warning about such points.
     EXPECT_EQ(file.mesh.points.size(), 5u);
     EXPECT_EQ(file.mesh.points[1], Vec3(0, 0, 0));
@@ -221,21 +233,6 @@ TEST(TetgenReader, ReadsSecondOrderTetrahedraByTheirCorners) {
     EXPECT_EQ(file.warnings,
               std::vector<std::string>{"read 1 second-order tetrahedron by the corners alone, as "
                                        "linear; 6 nodes that are no corners were left out"});
-}
-
-TEST(TetgenReader, RefusesWhatItCannotRead) {
-    EXPECT_EQ(refusal_of_nodes("8  3", "8  2"), "liver.node:1: the dimension is 2; it must be 3");
-    EXPECT_EQ(refusal_of_nodes("3    1  1  0", "3    1  nan  0"),
-              "liver.node:4: coordinate y is nan; it must be finite");
-    EXPECT_THAT(refusal_of_nodes("3    1  1  0", "3    1  1,0  0"),
-                StartsWith("liver.node:4: expected coordinate y, found '1,0'"));
-    EXPECT_EQ(refusal_of_nodes("3    1  1  0", "3    1  1"),
-              "liver.node:4: coordinate z is missing: the line has 3 numbers");
-    EXPECT_THAT(refusal_of_elements("6  4  1", "6  10  1"),
-                AllOf(StartsWith("liver.ele:1: a second-order tetrahedron (number of nodes 10)"),
-                      HasSubstr("export linear elements")));
-    EXPECT_EQ(refusal_of_elements("6  4  1", "6  8  1"),
-              "liver.ele:1: elements have 8 nodes; they must have 4");
 }
 
 }  // namespace

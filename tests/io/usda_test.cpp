@@ -8,11 +8,9 @@
 
 #include "incise/base/error.h"
 #include "incise/io/mesh/mesh_writer.h"
-#include "incise/io/mesh/usda_reader.h"
 #include "incise/topology/box_mesh.h"
 #include "tests/io/reader_samples.h"
-#include "tests/support/mesh_consistency.h"
-#include "tests/support/mutation.h"
+#include "tests/io/refusals.h"
 #include "tests/support/temporary_folder.h"
 
 namespace incise::io {
@@ -59,10 +57,6 @@ def Xform "World" (
 }
 )";
 
-std::string usda_refusal(std::string_view from, std::string_view to) {
-    return refusal("a.usda", replaced(usda, from, to));
-}
-
 TEST(UsdaReader, ReadsPointsTetrahedraAndSubsets) {
     const auto file = read_bytes("a.usda", usda);
     EXPECT_EQ(file.mesh.points.size(), 5u);
@@ -86,14 +80,6 @@ TEST(UsdaReader, TurnsUnitsIntoMetres) {
     EXPECT_THAT(none.warnings, ElementsAre(HasSubstr("taken as regions"),
                                            StartsWith("has no metersPerUnit: coordinates are taken "
                                                       "as metres")));
-    EXPECT_EQ(usda_refusal("metersPerUnit = 1", "metersPerUnit = -1"),
-              "a.usda: metersPerUnit is -1; it must be above 0");
-    EXPECT_THAT(usda_refusal("metersPerUnit = 1", "metersPerUnit = one"),
-                StartsWith("a.usda:4: expected the metres per unit, found 'one'"));
-    EXPECT_THAT(
-        refusal("a.usda", replaced(replaced(usda, "metersPerUnit = 1", "metersPerUnit = 1e308"),
-                                   "(1, 1, 1),]", "(10, 10, 10)]")),
-        HasSubstr("makes coordinates beyond the range of numbers"));
 }
 
 TEST(UsdaReader, FollowsTheOrientation) {
@@ -118,73 +104,55 @@ TEST(UsdaReader, PutsMeshesOneBehindTheOther) {
                                            "2 meshes were put one behind the other"));
 }
 
-TEST(UsdaReader, RefusesWrongNumbers) {
-    EXPECT_EQ(usda_refusal("(1, 2, 3, 4)", "(1, 2, 3, 5)"),
-              "a.usda:25: tetrahedron 1: point 5 is out of range (5 points, numbered from 0)");
-    EXPECT_EQ(usda_refusal("(1, 2, 3, 4)", "(1, 2, 3)"),
-              "a.usda:25: expected ',' between numbers, found ')'");
-    EXPECT_EQ(usda_refusal("(1, 1, 1),]", "(1, 1, nan)]"),
-              "a.usda:21: a coordinate is nan; it must be finite");
-    EXPECT_EQ(usda_refusal("(1, 1, 1),]", "(1, x, 1)]"),
-              "a.usda:21: expected a coordinate, found 'x'");
-    EXPECT_EQ(usda_refusal("indices = [1]", "indices = [2]"),
-              "a.usda:30: subset 'Tumour': tetrahedron 2 is out of range (2 tetrahedra, numbered "
-              "from 0)");
-    EXPECT_THAT(usda_refusal("\"rightHanded\"", "\"upright\""),
-                StartsWith("a.usda:14: TetMesh 'Liver': the orientation is 'upright'; it must be"));
-}
+const std::vector<Fault> usda_faults = {
+    // Wrong numbers.
+    {"(1, 2, 3, 4)", "(1, 2, 3, 5)",
+     "a.usda:25: tetrahedron 1: point 5 is out of range (5 points, numbered from 0)"},
+    {"(1, 2, 3, 4)", "(1, 2, 3)", "a.usda:25: expected ',' between numbers, found ')'"},
+    {"(1, 1, 1),]", "(1, 1, nan)]", "a.usda:21: a coordinate is nan; it must be finite"},
+    {"(1, 1, 1),]", "(1, x, 1)]", "a.usda:21: expected a coordinate, found 'x'"},
+    {"indices = [1]", "indices = [2]",
+     "a.usda:30: subset 'Tumour': tetrahedron 2 is out of range (2 tetrahedra, numbered from 0)"},
+    {"\"rightHanded\"", "\"upright\"",
+     "a.usda:14: TetMesh 'Liver': the orientation is 'upright'; it must be..."},
+    {"metersPerUnit = 1", "metersPerUnit = -1", "a.usda: metersPerUnit is -1; it must be above 0"},
+    {"metersPerUnit = 1", "metersPerUnit = one",
+     "a.usda:4: expected the metres per unit, found 'one'..."},
+    // What is not followed.
+    {"xformOpOrder = []", "xformOpOrder = [\"xformOp:translate\"]",
+     "a.usda:12: the mesh is moved by xformOpOrder of 'World', which is not done here; save its "
+     "points..."},
+    {"point3f[] points = [(0", "point3f[] points.timeSamples = {0: [(0)]}\nfloat[] more = [(0",
+     "a.usda:21: TetMesh 'Liver' changes in time; save it at one time..."},
+    {"tetVertexIndices", "vertexIndices",
+     "a.usda:14: TetMesh 'Liver' has no tetVertexIndices; save it in one..."},
+    {"def TetMesh", "def Mesh", "a.usda: there is no prim defined as a TetMesh here..."},
+    {"def TetMesh", "over TetMesh", "...there is no prim defined..."},
+    {"def Xform", "class Xform", "...there is no prim defined..."},
+    {"", "#usda 1.0\ndef \"A\" (\n    references = @b.usda@</B>\n)\n{\n}\n",
+     "a.usda:3: refers to another file, which is not read, and there is no..."},
+    // Damaged text.
+    {"\"World\" (", "World (", "a.usda:8: expected the name of a prim, found..."},
+    {"\"tetrahedron\"", "\"tetrahedron", "a.usda:29: a text in quotes has no end..."},
+    {"(1, 2, 3, 4)]", "(1, 2, 3, 4)", "...or ']' in a list..."},
+    {"", usda + "}\n", "...expected a prim or a property..."},
+};
 
-TEST(UsdaReader, RefusesWhatItDoesNotFollow) {
-    EXPECT_THAT(usda_refusal("xformOpOrder = []", "xformOpOrder = [\"xformOp:translate\"]"),
-                StartsWith("a.usda:12: the mesh is moved by xformOpOrder of 'World', which is not "
-                           "done here; save its points"));
-    EXPECT_THAT(usda_refusal("point3f[] points = [(0",
-                             "point3f[] points.timeSamples = {0: [(0)]}\n"
-                             "float[] more = [(0"),
-                StartsWith("a.usda:21: TetMesh 'Liver' changes in time; save it at one time"));
-    EXPECT_THAT(usda_refusal("tetVertexIndices", "vertexIndices"),
-                StartsWith("a.usda:14: TetMesh 'Liver' has no tetVertexIndices; save it in one"));
-    EXPECT_THAT(usda_refusal("def TetMesh", "def Mesh"),
-                StartsWith("a.usda: there is no prim defined as a TetMesh here"));
-    EXPECT_THAT(usda_refusal("def TetMesh", "over TetMesh"), HasSubstr("there is no prim defined"));
-    EXPECT_THAT(usda_refusal("def Xform", "class Xform"), HasSubstr("there is no prim defined"));
-    EXPECT_THAT(
-        refusal("a.usda", "#usda 1.0\ndef \"A\" (\n    references = @b.usda@</B>\n)\n{\n}\n"),
-        StartsWith("a.usda:3: refers to another file, which is not read, and there is no"));
+TEST(UsdaReader, RefusesFaultyFiles) {
+    expect_refusals("a.usda", usda, usda_faults);
+    expect_refusals(
+        "a.usda", replaced(usda, "metersPerUnit = 1", "metersPerUnit = 1e308"),
+        {{"(1, 1, 1),]", "(10, 10, 10)]", "...makes coordinates beyond the range of numbers..."}});
     EXPECT_THAT(refusal("a.usdc", "PXR-USDC" + std::string(80, '\0')),
                 StartsWith("a.usdc: is a binary file of USD (.usdc or .usd), which cannot be read; "
                            "turn it into text, for instance by 'usdcat"));
     EXPECT_THAT(refusal("a.usdz", "PK\x03\x04" + std::string(80, '\0')), HasSubstr("(.usdz)"));
-}
-
-TEST(UsdaReader, RefusesDamagedText) {
-    EXPECT_THAT(usda_refusal("\"World\" (", "World ("),
-                StartsWith("a.usda:8: expected the name of a prim, found"));
-    EXPECT_THAT(usda_refusal("\"tetrahedron\"", "\"tetrahedron"),
-                StartsWith("a.usda:29: a text in quotes has no end"));
-    EXPECT_THAT(usda_refusal("(1, 2, 3, 4)]", "(1, 2, 3, 4)"), HasSubstr("or ']' in a list"));
-    EXPECT_THAT(refusal("a.usda", usda + "}\n"), HasSubstr("expected a prim or a property"));
     std::string deep = "#usda 1.0\n";
     for (int i = 0; i < 100000; ++i) deep += "def \"a\" {";
     EXPECT_THAT(refusal("a.usda", deep), HasSubstr("prims lie in each other more than 200 deep"));
     const auto end = usda.find("over \"Liver2\"");
     for (std::size_t size = 10; size < end; size += 7)
         EXPECT_NE(refusal("a.usda", usda.substr(0, size)), "") << size;
-}
-
-TEST(UsdaReader, ReadsOrRefusesMutatedFiles) {
-    int num_refused = 0;
-    std::mt19937 random(12345);
-    for (int i = 0; i < 3000; ++i) {
-        const InputFile file{"a.usda", support::mutated(usda, random)};
-        try {
-            ASSERT_EQ(support::inconsistency_of(read_usda(file, {}).mesh), "");
-        } catch (const InputError& error) {
-            ++num_refused;
-            EXPECT_TRUE(std::string_view(error.what()).starts_with("a.usda:")) << error.what();
-        }
-    }
-    EXPECT_GT(num_refused, 0);
 }
 
 TEST(UsdaWriter, WritesWhatReadsBackToTheBit) {
