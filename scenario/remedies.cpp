@@ -19,11 +19,11 @@ std::string remedy_for(const physics::UnsuitableMaterial& misfit) {
     switch (misfit.cause) {
         using enum physics::MaterialMisfit;
         case needs_tetrahedra:
-            return ": give the region a material with method = \"hybmss\"";
+            return ": give the region a material with method = \"heml\", and without prony";
         case needs_hexahedra:
             return ": give the region a material with method = \"heml\"";
         case needs_cubes:
-            return "; make cubes of an image by incise mesh --hex --size";
+            return "; use method = \"heml\", or make cubes of an image by incise mesh --hex --size";
         case other:
             return "";
     }

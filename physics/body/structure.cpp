@@ -53,7 +53,7 @@ void Structure::follow(const fragments::FragmentChanges& changes) {
     resize(std::max(changes.mesh.node_capacity_before, changes.mesh.node_capacity_after));
     elements_.apply(fragments_, changes.mesh);
     for (const auto& record : changes.mesh.elements_removed)
-        elements_.erase(record.id, record.region);
+        elements_.erase(record.id, record.region, record.kind);
     for (const auto& record : changes.mesh.elements_added) elements_.insert(fragments_, record.id);
     std::vector<ElementId> changed;
     for (const fragments::ElementRewiring& rewiring : changes.mesh.rewired)

@@ -10,6 +10,7 @@
 
 #include "incise/base/error.h"
 #include "incise/physics/elements/kernel_block.h"
+#include "incise/physics/elements/virtual_centre_kernel.h"
 
 namespace incise::physics {
 
@@ -18,7 +19,14 @@ using topology::CellKind;
 
 namespace {
 
-std::shared_ptr<ElementBlock> make_block(const Material& material, Precision precision) {
+template <CellKind kind>
+std::shared_ptr<ElementBlock> make_centre_block(const HyperElasticLinks& links, double density) {
+    return std::make_shared<KernelBlock<VirtualCentreKernel<kind>>>(
+        VirtualCentreKernel<kind>{links.law, links.inversion_threshold}, density);
+}
+
+std::shared_ptr<ElementBlock> make_block(const Material& material, Precision precision,
+                                         CellKind kind) {
     if (const auto* springs = std::get_if<MassSprings>(&material.method))
         return std::make_shared<KernelBlock<MassSpringKernel>>(MassSpringKernel{springs->young},
                                                                material.density);
@@ -26,6 +34,11 @@ std::shared_ptr<ElementBlock> make_block(const Material& material, Precision pre
         return std::make_shared<KernelBlock<HybmssKernel>>(HybmssKernel{*hybrid, precision},
                                                            material.density);
     const auto& links = std::get<HyperElasticLinks>(material.method);
+    if (kind == CellKind::hexahedron)
+        return make_centre_block<CellKind::hexahedron>(links, material.density);
+    if (kind == CellKind::wedge) return make_centre_block<CellKind::wedge>(links, material.density);
+    if (kind == CellKind::pyramid)
+        return make_centre_block<CellKind::pyramid>(links, material.density);
     const HemlKernel elastic{links.law, links.inversion_threshold, precision};
     if (links.prony.empty())
         return std::make_shared<KernelBlock<HemlKernel>>(elastic, material.density);
@@ -34,6 +47,29 @@ std::shared_ptr<ElementBlock> make_block(const Material& material, Precision pre
             NodalViscousKernel(elastic, links.prony), material.density);
     return std::make_shared<KernelBlock<ViscousKernel>>(ViscousKernel(elastic, links.prony),
                                                         material.density);
+}
+
+template <CellKind kind>
+std::optional<std::string> why_no_centre_cell_of(const FragmentMesh& fragments, ElementId e) {
+    typename VirtualCentreKernel<kind>::Corners corners;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+        corners[k] = fragments.rest_position(fragments.corners(e)[k]);
+    return VirtualCentreKernel<kind>::why_no_cell(corners);
+}
+
+/// See VirtualCentreKernel::why_no_cell.
+std::optional<std::string> why_no_centre_cell(const FragmentMesh& fragments, ElementId e) {
+    switch (fragments.kind(e)) {
+        case CellKind::hexahedron:
+            return why_no_centre_cell_of<CellKind::hexahedron>(fragments, e);
+        case CellKind::wedge:
+            return why_no_centre_cell_of<CellKind::wedge>(fragments, e);
+        case CellKind::pyramid:
+            return why_no_centre_cell_of<CellKind::pyramid>(fragments, e);
+        case CellKind::tetrahedron:
+            break;
+    }
+    return {};
 }
 
 /// Calls visit(range, begin, end) for each range of node ids that has some of `nodes`. These are
@@ -97,14 +133,18 @@ void ElementStore::require_law(const FragmentMesh& fragments, const topology::Me
     const auto* hybrid = std::get_if<HybridSprings>(&material.method);
     const CellKind kind = fragments.kind(e);
     const std::string is_a = of_region + "is a " + traits(kind).name;
-    if (kind != CellKind::tetrahedron && kind != CellKind::hexahedron)
-        refuse(MaterialMisfit::other,
-               is_a + ", for which no method has forces; use tetrahedra or hexahedra");
     if (hybrid && kind != CellKind::hexahedron)
         refuse(MaterialMisfit::needs_hexahedra, is_a + "; the method hybmss needs hexahedra");
-    if (!hybrid && kind != CellKind::tetrahedron)
+    if (std::holds_alternative<MassSprings>(material.method) && kind != CellKind::tetrahedron)
         refuse(MaterialMisfit::needs_tetrahedra,
-               is_a + "; the methods heml and mass-spring need tetrahedra");
+               is_a + "; the method mass-spring needs tetrahedra");
+    const auto* links = std::get_if<HyperElasticLinks>(&material.method);
+    if (links && kind != CellKind::tetrahedron) {
+        if (!links->prony.empty())
+            refuse(MaterialMisfit::needs_tetrahedra, is_a + "; a Prony series needs tetrahedra");
+        if (const auto reason = why_no_centre_cell(fragments, e))
+            refuse(MaterialMisfit::other, of_region + *reason);
+    }
     constexpr double rounding = 1e-12;
     if (material.has_fibres() && !(std::abs(input_of(fragments, e).fibre.norm() - 1.0) <= rounding))
         refuse(MaterialMisfit::other,
@@ -117,9 +157,11 @@ void ElementStore::require_law(const FragmentMesh& fragments, const topology::Me
         refuse(MaterialMisfit::needs_cubes, " " + *reason);
 }
 
-std::size_t ElementStore::block_index(ElementId e, int region) const {
-    return e.index() / ElementBlock::max_elements * table_.materials.size() +
-           table_.of_region.at(region);
+std::size_t ElementStore::block_index(ElementId e, int region, CellKind kind) const {
+    const std::size_t of_material =
+        e.index() / ElementBlock::max_elements * table_.materials.size() +
+        table_.of_region.at(region);
+    return of_material * topology::num_cell_kinds + static_cast<std::size_t>(kind);
 }
 
 ElementInput ElementStore::input_of(const FragmentMesh& fragments, ElementId e) const {
@@ -128,17 +170,18 @@ ElementInput ElementStore::input_of(const FragmentMesh& fragments, ElementId e) 
 }
 
 void ElementStore::insert(const FragmentMesh& fragments, ElementId e) {
-    const std::size_t index = block_index(e, fragments.region(e));
+    const CellKind kind = fragments.kind(e);
+    const std::size_t index = block_index(e, fragments.region(e), kind);
     if (index >= blocks_.size()) blocks_.resize(index + 1);
     if (!blocks_[index])
         blocks_[index] = make_block(table_.materials[table_.of_region.at(fragments.region(e))],
-                                    table_.precision);
+                                    table_.precision, kind);
     editable(index).insert(e, input_of(fragments, e));
     note_change(index);
 }
 
 void ElementStore::replace(const FragmentMesh& fragments, ElementId e) {
-    const std::size_t index = block_index(e, fragments.region(e));
+    const std::size_t index = block_index(e, fragments.region(e), fragments.kind(e));
     editable(index).replace(e, input_of(fragments, e));
     note_change(index);
 }
@@ -307,8 +350,8 @@ double ElementStore::advance(std::span<const Vec3> before, std::span<const Vec3>
     return std::accumulate(energies_taken_.begin(), energies_taken_.end(), 0.0);
 }
 
-void ElementStore::erase(ElementId e, int region) {
-    const std::size_t index = block_index(e, region);
+void ElementStore::erase(ElementId e, int region, CellKind kind) {
+    const std::size_t index = block_index(e, region, kind);
     editable(index).erase(e);
     note_change(index);
 }

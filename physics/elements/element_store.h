@@ -43,8 +43,8 @@ std::size_t history_size(const Material& material);
 
 /// Why a material does not suit an element.
 enum class MaterialMisfit {
-    needs_tetrahedra,  ///< its method is for tetrahedra, and the element is a hexahedron
-    needs_hexahedra,   ///< its method is for hexahedra, and the element is a tetrahedron
+    needs_tetrahedra,  ///< its method is for tetrahedra, and the element is none
+    needs_hexahedra,   ///< its method is for hexahedra, and the element is none
     needs_cubes,       ///< its method is for cubes or nearly cubic boxes
     other,
 };
@@ -60,9 +60,10 @@ struct UnsuitableMaterial : InputError {
 
 /// The elements of a body in blocks: its fragments.
 ///
-/// A block has the elements of one material whose ids agree in all but their lowest bits, that is
-/// in a range of ElementBlock::max_elements ids. The division depends only on ids and materials. An
-/// edited body is therefore divided and summed exactly as a new body with the same mesh.
+/// A block has the elements of one material and one kind whose ids agree in all but their lowest
+/// bits, that is in a range of ElementBlock::max_elements ids. The division depends only on ids and
+/// materials. An edited body is therefore divided and summed exactly as a new body with the same
+/// mesh.
 class ElementStore {
   public:
     /// Builds the blocks of a mesh. Throws UnsuitableMaterial for a region without material and for
@@ -85,8 +86,8 @@ class ElementStore {
     void insert(const fragments::FragmentMesh& fragments, ElementId e);
     /// Precomputes an element again whose corners or whose share have changed.
     void replace(const fragments::FragmentMesh& fragments, ElementId e);
-    /// Erases an element. Its region is an argument.
-    void erase(ElementId e, int region);
+    /// Erases an element. Its region and its kind are arguments.
+    void erase(ElementId e, int region, topology::CellKind kind);
 
     /// Numbers the nodes of the changed blocks, at the end of an edit. Before this call, only
     /// contributions and rest volumes of elements may be read. `num_nodes` is the node capacity of
@@ -95,7 +96,7 @@ class ElementStore {
 
     /// Returns the block of an element.
     const ElementBlock& block_of(const fragments::FragmentMesh& fragments, ElementId e) const {
-        return *blocks_[block_index(e, fragments.region(e))];
+        return *blocks_[block_index(e, fragments.region(e), fragments.kind(e))];
     }
 
     /// Returns the density of the material of a region, kg/m3.
@@ -206,16 +207,17 @@ class ElementStore {
     /// Returns the block. If it is shared, a copy replaces it first.
     ElementBlock& editable(std::size_t block);
 
-    std::size_t block_index(ElementId e, int region) const;
+    std::size_t block_index(ElementId e, int region, topology::CellKind kind) const;
     void require_law(const fragments::FragmentMesh& fragments, const topology::Mesh& mesh,
                      ElementId e) const;
     ElementInput input_of(const fragments::FragmentMesh& fragments, ElementId e) const;
 
     MaterialTable table_;  // without the fibres
     std::optional<topology::ElementField<ElementId, Vec3>> fibres_;
-    std::vector<std::shared_ptr<ElementBlock>> blocks_;  // by range of ids, then by material
-    std::vector<std::size_t> changed_blocks_;            // since the nodes were numbered
-    std::vector<std::vector<Piece>> ranges_;  // by range of nodes; in ascending order of blocks
+    std::vector<std::shared_ptr<ElementBlock>>
+        blocks_;                               // by range of ids, then by material, then by kind
+    std::vector<std::size_t> changed_blocks_;  // since the nodes were numbered
+    std::vector<std::vector<Piece>> ranges_;   // by range of nodes; in ascending order of blocks
     std::vector<std::vector<LocalVector>> parts_;      // the forces of each block
     std::vector<std::uint16_t> local_numbers_;         // scratch, by node id
     std::vector<double> energies_taken_;               // scratch, by block, J

@@ -193,6 +193,8 @@ ElementTangent<8> element_tangent(const HybmssKernel& kernel, const HybmssKernel
 }
 
 ElementTangent<4> positive_part(const ElementTangent<4>& K) { return without_negative_modes(K); }
+ElementTangent<5> positive_part(const ElementTangent<5>& K) { return without_negative_modes(K); }
+ElementTangent<6> positive_part(const ElementTangent<6>& K) { return without_negative_modes(K); }
 ElementTangent<8> positive_part(const ElementTangent<8>& K) { return without_negative_modes(K); }
 
 }  // namespace incise::physics

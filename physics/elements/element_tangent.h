@@ -47,7 +47,9 @@ ElementTangent<8> element_tangent(const HybmssKernel& kernel, const HybmssKernel
 /// Source: J. Teran, E. Sifakis, G. Irving, R. Fedkiw, Robust quasistatic finite elements and flesh
 /// simulation, SCA 2005.
 ElementTangent<4> positive_part(const ElementTangent<4>& K);
-/// Returns the same for a hexahedron.
+/// Returns the same for a pyramid, a wedge and a hexahedron.
+ElementTangent<5> positive_part(const ElementTangent<5>& K);
+ElementTangent<6> positive_part(const ElementTangent<6>& K);
 ElementTangent<8> positive_part(const ElementTangent<8>& K);
 
 }  // namespace incise::physics

@@ -193,6 +193,7 @@ constexpr EditProgram edit_programs[] = {
     {"one tetrahedron", 200}, {"two by a face", 900}, {"two by an edge", 600}, {"cube", 1700},
     {"ring", 1700},           {"ball", 1700},         {"organ", 200}};
 constexpr EditProgram hexahedral_edit_programs[] = {{"hexahedra", 1500}, {"voxels", 1500}};
+constexpr EditProgram mixed_edit_programs[] = {{"mixed", 300}};
 
 constexpr int total_edits(const auto& programs) {
     return std::accumulate(std::begin(programs), std::end(programs), 0,
@@ -234,12 +235,16 @@ std::string name_of(const testing::TestParamInfo<EditProgram>& program) {
 INSTANTIATE_TEST_SUITE_P(OfTetrahedra, RandomEdits, testing::ValuesIn(edit_programs), name_of);
 INSTANTIATE_TEST_SUITE_P(OfHexahedra, RandomEdits, testing::ValuesIn(hexahedral_edit_programs),
                          name_of);
+INSTANTIATE_TEST_SUITE_P(OfMixtures, RandomEdits, testing::ValuesIn(mixed_edit_programs), name_of);
 
 TEST(RandomEdits, OnEveryFamilyAreTested) {
     if (test::is_sanitized) GTEST_SKIP() << "the lists hold the smaller families only";
     EXPECT_EQ(test::tetrahedral_families().size(), std::size(edit_programs));
     EXPECT_EQ(test::families_of(topology::CellKind::hexahedron).size(),
               std::size(hexahedral_edit_programs));
+    EXPECT_EQ(test::mesh_families().size(), std::size(edit_programs) +
+                                                std::size(hexahedral_edit_programs) +
+                                                std::size(mixed_edit_programs));
 }
 
 // Many edits in a row, undone in reverse: constraints, loads on nodes and all else are back, so

@@ -62,13 +62,34 @@ inline void expect_equal(const ModelSnapshot& a, const ModelSnapshot& b) {
     EXPECT_EQ(a.totals, b.totals);
 }
 
-/// All materials for the cells of the mesh that there are in the precision; every other law with
-/// viscosity, by the two rules.
+/// The first two laws of those that need no fibres, and of fibres the last, for cells of any kind.
+inline std::vector<Material> materials_of_any_cells() {
+    const auto laws = test_laws();
+    return {{950.0, HyperElasticLinks{laws[3].law}},
+            {1010.0, HyperElasticLinks{laws[14].law}},
+            {1040.0, HyperElasticLinks{laws.back().law}}};
+}
+
+/// All materials for the cells of the mesh that there are in the precision; every other law of
+/// tetrahedra with viscosity, by the two rules.
 inline MaterialTable table_for(const topology::MeshData& data,
                                Precision precision = Precision::double_precision) {
-    const bool are_hexahedra = data.kinds.front() == topology::CellKind::hexahedron;
-    MaterialTable table =
-        are_hexahedra ? table_of_hybrid_springs() : table_of_all_materials(data.num_cells());
+    using topology::CellKind;
+    const auto are_all = [&](CellKind kind) {
+        return std::ranges::all_of(data.kinds, [&](CellKind of_cell) { return of_cell == kind; });
+    };
+    if (!are_all(CellKind::tetrahedron)) {
+        MaterialTable table =
+            are_all(CellKind::hexahedron) ? table_of_hybrid_springs() : MaterialTable();
+        for (const Material& material : materials_of_any_cells()) {
+            table.of_region[static_cast<int>(table.materials.size())] = table.materials.size();
+            table.materials.push_back(material);
+        }
+        table.fibres = random_fibres(data.num_cells());
+        table.precision = precision;
+        return table;
+    }
+    MaterialTable table = table_of_all_materials(data.num_cells());
     table.precision = precision;
     if (precision == Precision::single_precision)
         for (Material& material : table.materials)

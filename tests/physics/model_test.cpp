@@ -218,17 +218,21 @@ TEST(Model, RefusesARegionWithoutMaterial) {
     EXPECT_TRUE(has(text, "region 42")) << text;
 }
 
-TEST(Model, RefusesCellsWithoutAForceLaw) {
+TEST(Model, RefusesCellsThatItsMethodDoesNotTake) {
     for (const char* name : {"hexahedra", "mixed"})
         for (const auto& family : test::mesh_families()) {
             if (family.name != name) continue;
             auto data = family.data;
             std::fill(data.regions.begin(), data.regions.end(), 0);
             const Mesh mesh = Mesh::build(data).mesh;
-            const auto table = table_of_one_law(NeoHookean{1e3, 1e3});
-            EXPECT_THROW(Model(mesh, table), InputError);
-            const std::string text = message_of([&] { Model(mesh, table); });
-            EXPECT_TRUE(has(text, "element ") && has(text, "tetrahedra")) << text;
+            EXPECT_NO_THROW(Model(mesh, table_of_one_law(soft_law)));
+            const std::vector<PronyTerm> prony{{0.3, 0.05}};
+            for (const auto& table :
+                 {table_of_one_material(MassSprings{8e3}),
+                  table_of_one_material(HyperElasticLinks{soft_law, 0.4, prony})}) {
+                const std::string text = message_of([&] { Model(mesh, table); });
+                EXPECT_TRUE(has(text, "element ") && has(text, "needs tetrahedra")) << text;
+            }
         }
 }
 

@@ -81,6 +81,7 @@ inline std::vector<NamedMaterial> materials_of_all_methods() {
             {"viscous by the nodal rule", tet,
              table_of_one_material(HyperElasticLinks{soft_law, 0.4, prony, PronyRule::nodal})},
             {"springs", tet, table_of_one_material(MassSprings{8e3})},
+            {"neo-Hookean hexahedra", hex, table_of_one_law(soft_law)},
             {"hybrid springs", hex, table_of_one_material(HybridSprings{3e3, 1e4, 1.0})}};
 }
 

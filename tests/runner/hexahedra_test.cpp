@@ -200,13 +200,16 @@ fix = "xyz"
 
     expect_warnings_near_hexahedra(folder, head + materials);
 
+    // One law serves both kinds, but not with viscosity.
+    EXPECT_NO_THROW(Simulation(folder.scenario(head + "[[material]]\n" + soft)));
     try {
-        Simulation other(folder.scenario(head + "[[material]]\n" + soft));
+        Simulation other(folder.scenario(head + "[[material]]\n" + soft +
+                                         "prony = [{ alpha = 0.3, tau = 0.1 }]\n"));
         ADD_FAILURE() << "accepted";
     } catch (const InputError& error) {
         EXPECT_NE(std::string(error.what())
-                      .find(" is a hexahedron; the methods heml and mass-spring need tetrahedra: "
-                            "give the region a material with method = \"hybmss\""),
+                      .find(" is a hexahedron; a Prony series needs tetrahedra: give the region a "
+                            "material with method = \"heml\", and without prony"),
                   std::string::npos)
             << error.what();
     }

@@ -1,0 +1,406 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/physics/elements/virtual_centre_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "incise/base/error.h"
+#include "incise/physics/elements/spectrum.h"
+#include "incise/physics/laws/stiffening.h"
+#include "incise/topology/geometry.h"
+
+namespace incise::physics {
+
+using topology::CellKind;
+
+template <CellKind kind>
+typename CentreDivision<kind>::Points CentreDivision<kind>::points(const Corners& x) {
+    Points all;
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k < num_corners; ++k) {
+        all[k] = x[k];
+        sum += x[k];
+    }
+    std::size_t next = num_corners;
+    for (int f = 0; f < traits.num_faces; ++f) {
+        const auto face = traits.face(f);
+        if (face.size() != 4) continue;
+        Vec3 of_face = Vec3::Zero();
+        for (const int k : face) of_face += x[static_cast<std::size_t>(k)];
+        all[next++] = 0.25 * of_face;
+    }
+    all[next] = sum / static_cast<double>(num_corners);
+    return all;
+}
+
+template <CellKind kind>
+typename CentreDivision<kind>::Corners CentreDivision<kind>::gathered(const Points& f) {
+    Corners all;
+    const Vec3 of_centre = f[num_points - 1] / static_cast<double>(num_corners);
+    for (std::size_t k = 0; k < num_corners; ++k) all[k] = f[k] + of_centre;
+    std::size_t next = num_corners;
+    for (int i = 0; i < traits.num_faces; ++i) {
+        const auto face = traits.face(i);
+        if (face.size() != 4) continue;
+        const Vec3 of_corner = 0.25 * f[next++];
+        for (const int k : face) all[static_cast<std::size_t>(k)] += of_corner;
+    }
+    return all;
+}
+
+namespace {
+
+/// The function g of VirtualCentreKernel as g'/g, and its derivative.
+struct GrowthRate {
+    double rate, slope;
+};
+GrowthRate growth_rate(double J, double threshold) {
+    if (J >= threshold) return {1.0 / J, -1.0 / (J * J)};
+    return {1.0 / threshold, 0.0};
+}
+double grown(double J, double threshold) {
+    return J >= threshold ? J : threshold * std::exp((J - threshold) / threshold);
+}
+
+/// The deformation of one tetrahedron of a cell.
+struct PartState {
+    Mat3 H;            ///< F - 1
+    double J;          ///< its own volume ratio
+    double scale;      ///< (g(Jm)/g(J))^(1/3)
+    Deformation mean;  ///< of scale F
+};
+
+Deformation deformation_of(const Mat3& H, const Vec3& fibre) {
+    Deformation d;
+    d.F = Mat3::Identity() + H;
+    d.twice_strain = H + H.transpose() + H.transpose() * H;
+    d.strain = {d.twice_strain.trace(), d.twice_strain.squaredNorm(), d.F.determinant(),
+                fibre.dot(d.twice_strain * fibre)};
+    return d;
+}
+
+template <CellKind kind>
+struct CellState {
+    using Kernel = VirtualCentreKernel<kind>;
+    using Division = CentreDivision<kind>;
+    static constexpr auto parts = Division::parts();
+
+    std::array<PartState, Kernel::num_parts> of_part;
+    double mean_J = 0.0;
+
+    CellState(const Kernel& kernel, const typename Kernel::Element& e,
+              const typename Kernel::Corners& x) {
+        typename Kernel::Corners u;
+        for (std::size_t k = 0; k < u.size(); ++k) u[k] = x[k] - e.rest[k];
+        const auto at = Division::points(u);
+        for (std::size_t t = 0; t < parts.size(); ++t) {
+            const auto& p = parts[t];
+            Mat3 edges;
+            edges << at[p[1]] - at[p[0]], at[p[2]] - at[p[0]], at[p[3]] - at[p[0]];
+            of_part[t].H = edges * e.inverse_edges[t];
+            of_part[t].J = (Mat3::Identity() + of_part[t].H).determinant();
+            mean_J += e.volumes[t] * of_part[t].J;
+        }
+        mean_J /= e.volume;
+        const double of_mean = grown(mean_J, kernel.inversion_threshold);
+        for (PartState& part : of_part) {
+            part.scale = std::cbrt(of_mean / grown(part.J, kernel.inversion_threshold));
+            Mat3 H = part.scale * part.H;
+            H.diagonal().array() += part.scale - 1.0;
+            part.mean = deformation_of(H, e.fibre);
+        }
+    }
+};
+
+/// The first Piola-Kirchhoff stress of a law, and a third of its product with F.
+struct PartStress {
+    Mat3 P;
+    double pressure;
+};
+PartStress stress_of(const LawResponse<double>& r, const Deformation& d, const Vec3& fibre) {
+    PartStress s;
+    s.P = d.F * second_stress_without_volume(r, d.twice_strain, fibre) + r.w_J * cofactors(d.F);
+    s.pressure = s.P.cwiseProduct(d.F).sum() / 3.0;
+    return s;
+}
+
+Mat3 cofactor_change(const Mat3& F, const Mat3& by) {
+    Mat3 change;
+    change << by.col(1).cross(F.col(2)) + F.col(1).cross(by.col(2)),
+        by.col(2).cross(F.col(0)) + F.col(2).cross(by.col(0)),
+        by.col(0).cross(F.col(1)) + F.col(0).cross(by.col(1));
+    return change;
+}
+
+/// What the tangent of a cell needs of one of its tetrahedra.
+struct PartTangent {
+    LawResponse<double> r;
+    Eigen::Matrix4d by_strain;  ///< derivatives of w_a, w_b, w_J and w_f by a, b, J and f
+    PartStress stress;
+    Mat3 F, cof_F, second_stress;
+    GrowthRate growth;
+};
+
+/// Adds the forces of a stress in one tetrahedron to those at its points.
+template <class Points>
+void add_forces(const Mat3& P, double volume, const Mat3& inverse_edges,
+                const std::array<std::size_t, 4>& part, Points& f) {
+    const Mat3 of_corners = -volume * (P * inverse_edges.transpose());
+    f[part[0]] -= of_corners.rowwise().sum();
+    for (std::size_t k = 1; k < 4; ++k)
+        f[part[k]] += of_corners.col(static_cast<Eigen::Index>(k - 1));
+}
+
+}  // namespace
+
+template <CellKind kind>
+std::optional<std::string> VirtualCentreKernel<kind>::why_no_cell(const Corners& X) {
+    const auto at = Division::points(X);
+    for (const auto& p : Division::parts())
+        if (!(topology::tetrahedron_volume(at[p[0]], at[p[1]], at[p[2]], at[p[3]]) > 0.0))
+            return "is so distorted that a part between its centre and one of its faces has no "
+                   "volume; move its nodes, or divide it into tetrahedra";
+    return {};
+}
+
+template <CellKind kind>
+typename VirtualCentreKernel<kind>::Element VirtualCentreKernel<kind>::precompute(
+    const Corners& X, const Vec3& fibre) const {
+    const auto at = Division::points(X);
+    Element e;
+    e.rest = X;
+    e.volume = 0.0;
+    if (has_fibres(law)) e.fibre = fibre;
+    for (std::size_t t = 0; t < num_parts; ++t) {
+        const auto p = Division::parts()[t];
+        const LinkElement part = link_element({at[p[0]], at[p[1]], at[p[2]], at[p[3]]});
+        e.volumes[t] = part.volume;
+        e.inverse_edges[t] = part.inverse_edges;
+        e.volume += part.volume;
+    }
+    return e;
+}
+
+template <CellKind kind>
+double VirtualCentreKernel<kind>::volume_ratio(const Element& e, const Corners& x) const {
+    const auto at = Division::points(x);
+    double volume = 0.0;
+    for (const auto& p : Division::parts())
+        volume += topology::tetrahedron_volume(at[p[0]], at[p[1]], at[p[2]], at[p[3]]);
+    return volume / e.volume;
+}
+
+template <CellKind kind>
+double VirtualCentreKernel<kind>::stiffness_energy(const Element& e) const {
+    const HemlKernel of_parts{law, inversion_threshold};
+    LinkElement whole;
+    whole.volume = e.volume;
+    return of_parts.stiffness_energy(whole);
+}
+
+template <CellKind kind>
+double VirtualCentreKernel<kind>::energy(const Element& e, const Corners& x) const {
+    const CellState<kind> state(*this, e, x);
+    double sum = 0.0;
+    for (std::size_t t = 0; t < num_parts; ++t)
+        sum += e.volumes[t] * response(law, state.of_part[t].mean.strain, inversion_threshold).w;
+    return sum;
+}
+
+// With q the third of P : F of each tetrahedron, and r = g'/g, the stress on F is
+// s P + (r(Jm) q_mean - r(J) q) cof F.
+template <CellKind kind>
+typename VirtualCentreKernel<kind>::Corners VirtualCentreKernel<kind>::forces(
+    const Element& e, const Corners& x) const {
+    const CellState<kind> state(*this, e, x);
+    std::array<PartStress, num_parts> stress;
+    double mean_pressure = 0.0;
+    for (std::size_t t = 0; t < num_parts; ++t) {
+        const Deformation& d = state.of_part[t].mean;
+        stress[t] = stress_of(response(law, d.strain, inversion_threshold), d, e.fibre);
+        mean_pressure += e.volumes[t] * stress[t].pressure;
+    }
+    mean_pressure *= growth_rate(state.mean_J, inversion_threshold).rate / e.volume;
+    typename Division::Points f;
+    f.fill(Vec3::Zero());
+    for (std::size_t t = 0; t < num_parts; ++t) {
+        const PartState& part = state.of_part[t];
+        const double volumetric =
+            mean_pressure - growth_rate(part.J, inversion_threshold).rate * stress[t].pressure;
+        const Mat3 P = part.scale * stress[t].P + volumetric * cofactors(Mat3::Identity() + part.H);
+        add_forces(P, e.volumes[t], e.inverse_edges[t], CellState<kind>::parts[t], f);
+    }
+    return Division::gathered(f);
+}
+
+// Each column is the change of the forces by a motion of one corner along one axis.
+template <CellKind kind>
+typename VirtualCentreKernel<kind>::Tangent VirtualCentreKernel<kind>::tangent(
+    const Element& e, const Corners& x) const {
+    const CellState<kind> state(*this, e, x);
+    const auto& parts = CellState<kind>::parts;
+    std::array<PartTangent, num_parts> of_part;
+    double mean_q = 0.0;
+    for (std::size_t t = 0; t < num_parts; ++t) {
+        PartTangent& p = of_part[t];
+        const Deformation& d = state.of_part[t].mean;
+        const LawResponse<Dual> r = response(law, with_derivatives(d.strain), inversion_threshold);
+        p.r = {r.w.value, r.w_a.value, r.w_b.value, r.w_J.value, r.w_f.value};
+        p.by_strain.col(0) = r.w_a.gradient;
+        p.by_strain.col(1) = r.w_b.gradient;
+        p.by_strain.col(2) = r.w_J.gradient;
+        p.by_strain.col(3) = r.w_f.gradient;
+        p.by_strain = (0.5 * (p.by_strain + p.by_strain.transpose())).eval();
+        p.stress = stress_of(p.r, d, e.fibre);
+        p.second_stress = second_stress_without_volume(p.r, d.twice_strain, e.fibre);
+        p.F = Mat3::Identity() + state.of_part[t].H;
+        p.cof_F = cofactors(p.F);
+        p.growth = growth_rate(state.of_part[t].J, inversion_threshold);
+        mean_q += e.volumes[t] * p.stress.pressure / e.volume;
+    }
+    const GrowthRate of_mean = growth_rate(state.mean_J, inversion_threshold);
+
+    Tangent K;
+    for (std::size_t corner = 0; corner < num_corners; ++corner)
+        for (int axis = 0; axis < 3; ++axis) {
+            Corners motion;
+            motion.fill(Vec3::Zero());
+            motion[corner][axis] = 1.0;
+            const auto at = Division::points(motion);
+            std::array<Mat3, num_parts> dF, dP;
+            std::array<double, num_parts> dJ, ds, dq;
+            double d_mean_J = 0.0, d_mean_q = 0.0;
+            for (std::size_t t = 0; t < num_parts; ++t) {
+                const auto& p = parts[t];
+                Mat3 edges;
+                edges << at[p[1]] - at[p[0]], at[p[2]] - at[p[0]], at[p[3]] - at[p[0]];
+                dF[t] = edges * e.inverse_edges[t];
+                dJ[t] = of_part[t].cof_F.cwiseProduct(dF[t]).sum();
+                d_mean_J += e.volumes[t] * dJ[t] / e.volume;
+            }
+            for (std::size_t t = 0; t < num_parts; ++t) {
+                const PartTangent& p = of_part[t];
+                const Deformation& d = state.of_part[t].mean;
+                const double s = state.of_part[t].scale;
+                ds[t] = s / 3.0 * (of_mean.rate * d_mean_J - p.growth.rate * dJ[t]);
+                const Mat3 dF_mean = s * dF[t] + ds[t] * p.F;
+                const Mat3 half = d.F.transpose() * dF_mean;
+                const Mat3 d_strain = half + half.transpose();
+                const Mat3 cof = cofactors(d.F);
+                const Eigen::Vector4d invariants(
+                    d_strain.trace(), 2.0 * d.twice_strain.cwiseProduct(d_strain).sum(),
+                    cof.cwiseProduct(dF_mean).sum(), e.fibre.dot(d_strain * e.fibre));
+                const Eigen::Vector4d dw = p.by_strain * invariants;
+                Mat3 dS = 4.0 * dw[1] * d.twice_strain + 4.0 * p.r.w_b * d_strain +
+                          2.0 * dw[3] * (e.fibre * e.fibre.transpose());
+                dS.diagonal().array() += 2.0 * dw[0];
+                dP[t] = dF_mean * p.second_stress + d.F * dS + dw[2] * cof +
+                        p.r.w_J * cofactor_change(d.F, dF_mean);
+                dq[t] =
+                    (dP[t].cwiseProduct(d.F).sum() + p.stress.P.cwiseProduct(dF_mean).sum()) / 3.0;
+                d_mean_q += e.volumes[t] * dq[t] / e.volume;
+            }
+            const double d_volumetric_mean =
+                of_mean.slope * d_mean_J * mean_q + of_mean.rate * d_mean_q;
+            typename Division::Points f;
+            f.fill(Vec3::Zero());
+            for (std::size_t t = 0; t < num_parts; ++t) {
+                const PartTangent& p = of_part[t];
+                const double volumetric = of_mean.rate * mean_q - p.growth.rate * p.stress.pressure;
+                const double d_volumetric = d_volumetric_mean -
+                                            p.growth.slope * dJ[t] * p.stress.pressure -
+                                            p.growth.rate * dq[t];
+                const Mat3 of_stress = ds[t] * p.stress.P + state.of_part[t].scale * dP[t] +
+                                       d_volumetric * p.cof_F +
+                                       volumetric * cofactor_change(p.F, dF[t]);
+                add_forces(of_stress, e.volumes[t], e.inverse_edges[t], parts[t], f);
+            }
+            const Corners change = Division::gathered(f);
+            const auto column = static_cast<Eigen::Index>(3 * corner) + axis;
+            for (std::size_t k = 0; k < num_corners; ++k)
+                K.col(column).template segment<3>(static_cast<Eigen::Index>(3 * k)) = -change[k];
+        }
+    return 0.5 * (K + K.transpose());
+}
+
+// Of the strains e_t, the shape counts in each tetrahedron, and the volume as a mean. Fibres feel
+// H : e, with e of the tetrahedron's shape and the mean volume.
+template <CellKind kind>
+typename VirtualCentreKernel<kind>::Tangent VirtualCentreKernel<kind>::rest_tangent(
+    const Element& e) const {
+    using Gradients = Eigen::Matrix<double, 3, static_cast<int>(num_corners)>;
+    std::array<Gradients, num_parts> of_part;  // of the shape functions of the corners, 1/m
+    Gradients mean = Gradients::Zero();
+    for (std::size_t t = 0; t < num_parts; ++t) {
+        const auto& p = CellState<kind>::parts[t];
+        typename Division::Points at_points;
+        at_points.fill(Vec3::Zero());
+        for (std::size_t k = 1; k < 4; ++k) {
+            const Vec3 gradient =
+                e.inverse_edges[t].row(static_cast<Eigen::Index>(k - 1)).transpose();
+            at_points[p[k]] += gradient;
+            at_points[p[0]] -= gradient;
+        }
+        const Corners at_corners = Division::gathered(at_points);
+        for (std::size_t k = 0; k < num_corners; ++k)
+            of_part[t].col(static_cast<Eigen::Index>(k)) = at_corners[k];
+        mean += e.volumes[t] / e.volume * of_part[t];
+    }
+    const double mu = rest_mu(law), bulk = rest_lambda(law) + 2.0 / 3.0 * mu;
+    const RestFibres fibres = rest_fibres(law);
+    const auto flat = [](const Gradients& g) {
+        return Eigen::Map<const Eigen::Matrix<double, 3 * static_cast<int>(num_corners), 1>>(
+            g.data());
+    };
+    Tangent K = bulk * e.volume * flat(mean) * flat(mean).transpose();
+    for (std::size_t t = 0; t < num_parts; ++t) {
+        const Gradients& g = of_part[t];
+        const double stiffness = mu * e.volumes[t];
+        for (Eigen::Index j = 0; j < g.cols(); ++j)
+            for (Eigen::Index i = 0; i <= j; ++i) {
+                Mat3 block = stiffness * (g.col(j) * g.col(i).transpose() -
+                                          2.0 / 3.0 * g.col(i) * g.col(j).transpose());
+                block.diagonal().array() += stiffness * g.col(i).dot(g.col(j));
+                K.template block<3, 3>(3 * i, 3 * j) += block;
+                if (i != j) K.template block<3, 3>(3 * j, 3 * i) += block.transpose();
+            }
+        if (fibres.modulus == 0.0) continue;
+        const double along = 1.0 - 3.0 * fibres.dispersion, third = 1.0 / 3.0;
+        const Mat3 H = fibres.dispersion * Mat3::Identity() + along * e.fibre * e.fibre.transpose();
+        const Gradients h = H * g + third * H.trace() * (mean - g);
+        K += fibres.modulus * e.volumes[t] * flat(h) * flat(h).transpose();
+    }
+    return K;
+}
+
+template <CellKind kind>
+std::array<double, VirtualCentreKernel<kind>::num_corners>
+VirtualCentreKernel<kind>::stiffness_bounds(const Element& e, const Corners&) const {
+    // The eigenvalue can grow by more than stiffening(), which bounds moduli: by up to 1.17 of it
+    // in 200 random states of each law and kind, at strains of up to 30 %. With nu below 0 the
+    // highest modulus is that of shear, which grows by itself.
+    constexpr double growth_margin = 1.2;
+    const double mu = rest_mu(law), of_shear = 2.0 * mu / (rest_lambda(law) + 2.0 * mu);
+    std::array<double, num_corners> s;
+    s.fill(growth_margin * std::max(1.0, of_shear) * spectrum(rest_tangent(e)).values.maxCoeff());
+    return s;
+}
+
+template <CellKind kind>
+double VirtualCentreKernel<kind>::stiffening(const Element& e, const Corners& x) const {
+    const CellState<kind> state(*this, e, x);
+    double largest = 0.0;
+    for (const PartState& part : state.of_part)
+        for (const auto& strain : {part.mean.strain, deformation_of(part.H, e.fibre).strain})
+            largest = std::max(largest, physics::stiffening(law, strain, inversion_threshold));
+    return largest;
+}
+
+template struct CentreDivision<CellKind::hexahedron>;
+template struct CentreDivision<CellKind::wedge>;
+template struct CentreDivision<CellKind::pyramid>;
+template struct VirtualCentreKernel<CellKind::hexahedron>;
+template struct VirtualCentreKernel<CellKind::wedge>;
+template struct VirtualCentreKernel<CellKind::pyramid>;
+
+}  // namespace incise::physics
