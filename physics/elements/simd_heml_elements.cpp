@@ -55,6 +55,23 @@ HemlStates* heml_states_for(Processor processor) {
     return INCISE_CHOOSE(processor, HemlStates, heml_states);
 }
 
+template <class Number>
+void set_metric(MetricGroup<Number>& group, std::size_t lane, const Eigen::Matrix3d& inverse_edges,
+                double volume) {
+    // (V^T V)^-1 is computed from V^-1. To invert the product would square the loss of accuracy in
+    // needles.
+    const auto product = [&](int a, int b) {
+        return inverse_edges.row(a).dot(inverse_edges.row(b));
+    };
+    const double G[] = {product(0, 0), product(1, 1), product(2, 2),
+                        product(0, 1), product(1, 2), product(2, 0)};
+    for (int k = 0; k < 6; ++k) group.G[k][lane] = static_cast<Number>(G[k]);
+    group.volume[lane] = static_cast<Number>(volume);
+    group.per_six_volumes[lane] = static_cast<Number>(1.0 / (6.0 * volume));
+}
+template void set_metric(MetricGroup<double>&, std::size_t, const Eigen::Matrix3d&, double);
+template void set_metric(MetricGroup<float>&, std::size_t, const Eigen::Matrix3d&, double);
+
 namespace {
 
 template <class Number>
@@ -76,17 +93,9 @@ void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& e
     LinkGroup<Number>& group = groups.links[g];
     for (int k = 0; k < 6; ++k)
         group.rest_links[k][lane] = static_cast<Number>(element.rest_links[k]);
-    // (V^T V)^-1 is computed from V^-1. To invert the product would square the loss of accuracy in
-    // needles.
-    const Mat3& W = element.inverse_edges;
-    const auto product = [&](int a, int b) { return W.row(a).dot(W.row(b)); };
-    const double G[] = {product(0, 0), product(1, 1), product(2, 2),
-                        product(0, 1), product(1, 2), product(2, 0)};
-    for (int k = 0; k < 6; ++k) group.G[k][lane] = static_cast<Number>(G[k]);
-    group.volume[lane] = static_cast<Number>(element.volume);
-    group.per_six_volumes[lane] = static_cast<Number>(1.0 / (6.0 * element.volume));
+    set_metric(group, lane, element.inverse_edges, element.volume);
     if (groups.fibres.empty()) return;
-    const Vec3 u = W * element.fibre;
+    const Vec3 u = element.inverse_edges * element.fibre;
     for (int k = 0; k < 3; ++k) groups.fibres[g].u[k][lane] = static_cast<Number>(u[k]);
 }
 

@@ -22,18 +22,31 @@ namespace incise::physics {
 struct HemlKernel;
 struct LinkElement;
 
-/// A group of eight elements, or of sixteen in floats, as the force loop reads it. It has the six
-/// numbers of G = (V^T V)^-1, with the rest edges V. The 27 numbers of vtr and Mtr of the paper
-/// follow from G: docs/theory.md, Lanes.
+/// What the forces of eight tetrahedra need, or of sixteen in floats: the six numbers of
+/// G = (V^T V)^-1, with the rest edges V. The 27 numbers of vtr and Mtr of the paper follow from G:
+/// docs/theory.md, Lanes.
 template <class Number>
-struct alignas(64) LinkGroup {
+struct alignas(64) MetricGroup {
     static constexpr std::size_t size = 64 / sizeof(Number);
+    Number G[6][size];             ///< components 11, 22, 33, 12, 23, 31, 1/m2
+    Number volume[size];           ///< at rest, m3
+    Number per_six_volumes[size];  ///< 1/(6 volume), 1/m3; it saves a slow division
+};
+
+/// A group of elements, as the force loop reads it.
+template <class Number>
+struct alignas(64) LinkGroup : MetricGroup<Number> {
+    using MetricGroup<Number>::size;
     Number rest_links[6][size];           ///< m2, in the order of squared_links()
-    Number G[6][size];                    ///< components 11, 22, 33, 12, 23, 31, 1/m2
-    Number volume[size];                  ///< at rest, m3
-    Number per_six_volumes[size];         ///< 1/(6 volume), 1/m3; it saves a slow division
     std::uint16_t offsets[4][size] = {};  ///< of the corners; see offset_of()
 };
+
+/// Sets the values of a tetrahedron in one lane of a group.
+/// @param inverse_edges  V^-1, 1/m
+/// @param volume         at rest, m3
+template <class Number>
+void set_metric(MetricGroup<Number>& group, std::size_t lane, const Eigen::Matrix3d& inverse_edges,
+                double volume);
 
 /// The vectors u = V^-1 a0 of a group of elements with fibres, 1/m.
 template <class Number>

@@ -12,60 +12,18 @@
 #include <string>
 
 #include "incise/base/types.h"
+#include "incise/physics/elements/centre_division.h"
 #include "incise/physics/elements/heml_kernel.h"
+#include "incise/physics/elements/simd_centre_elements.h"
 #include "incise/topology/cell_kind.h"
 
 namespace incise::physics {
-
-/// How a kind of cell is divided. Its centre is the mean of its corners. A face of four corners has
-/// a centre, too, the mean of these. Each edge of such a face makes a tetrahedron with both
-/// centres, and each face of three corners one with the centre of the cell.
-template <topology::CellKind kind>
-struct CentreDivision {
-    static constexpr topology::CellTraits traits = topology::traits(kind);
-    static constexpr std::size_t num_corners = static_cast<std::size_t>(traits.num_corners);
-    static constexpr std::size_t count_quads() {
-        std::size_t count = 0;
-        for (int f = 0; f < traits.num_faces; ++f) count += traits.face(f).size() == 4 ? 1 : 0;
-        return count;
-    }
-    static constexpr std::size_t num_quads = count_quads();
-    static constexpr std::size_t num_points = num_corners + num_quads + 1;  ///< the centre is last
-    static constexpr std::size_t num_parts =
-        4 * num_quads + static_cast<std::size_t>(traits.num_faces) - num_quads;
-    /// By tetrahedron, its points: corners, then centres of faces, then the centre of the cell.
-    static constexpr std::array<std::array<std::size_t, 4>, num_parts> parts() {
-        std::array<std::array<std::size_t, 4>, num_parts> all{};
-        std::size_t part = 0, quad = 0;
-        for (int f = 0; f < traits.num_faces; ++f) {
-            const auto face = traits.face(f);
-            const auto corner = [&](std::size_t p) {
-                return static_cast<std::size_t>(face[p % face.size()]);
-            };
-            if (face.size() == 3) {
-                all[part++] = {num_points - 1, corner(0), corner(1), corner(2)};
-                continue;
-            }
-            for (std::size_t p = 0; p < 4; ++p)
-                all[part++] = {num_points - 1, corner(p), corner(p + 1), num_corners + quad};
-            ++quad;
-        }
-        return all;
-    }
-
-    using Corners = std::array<Vec3, num_corners>;
-    using Points = std::array<Vec3, num_points>;
-    /// Returns the values at all points of a field that is linear in those at the corners.
-    static Points points(const Corners& x);
-    /// Returns the sums at the corners of what acts at the points, each with its weight.
-    static Corners gathered(const Points& f);
-};
 
 /// The kernel of HEML with a given law on hexahedra, wedges or pyramids. The energy is
 /// W = sum of V_t w(F'_t) over the tetrahedra t, with F'_t = (g(Jm)/g(J_t))^(1/3) F_t: each has its
 /// own change of shape, and all have the mean volume ratio Jm of the cell. g(J) is J, and goes on
 /// above zero below the inversion threshold. So the cell does not lock as nu nears 1/2, and under
-/// an affine deformation it is HEML.
+/// an affine deformation it is HEML. It is the reference for its SIMD version.
 template <topology::CellKind kind>
 struct VirtualCentreKernel {
     using Division = CentreDivision<kind>;
@@ -73,6 +31,7 @@ struct VirtualCentreKernel {
     static constexpr std::size_t num_parts = Division::num_parts;
     using Corners = std::array<Vec3, num_corners>;
     using Tangent = Eigen::Matrix<double, 3 * num_corners, 3 * num_corners>;
+    using Lanes = SimdCentreElements<kind>;
 
     /// Precomputed values of a cell at rest.
     struct Element {
@@ -130,9 +89,6 @@ auto element_tangent(const VirtualCentreKernel<kind>& kernel,
     return kernel.tangent(e, x);
 }
 
-extern template struct CentreDivision<topology::CellKind::hexahedron>;
-extern template struct CentreDivision<topology::CellKind::wedge>;
-extern template struct CentreDivision<topology::CellKind::pyramid>;
 extern template struct VirtualCentreKernel<topology::CellKind::hexahedron>;
 extern template struct VirtualCentreKernel<topology::CellKind::wedge>;
 extern template struct VirtualCentreKernel<topology::CellKind::pyramid>;

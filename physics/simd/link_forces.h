@@ -20,7 +20,7 @@ using LinkVectors = std::array<Lanes3<Number>, 3>;
 
 /// Returns G = (V^T V)^-1 of the part of a group that starts at lane `first`.
 template <class Number>
-[[gnu::always_inline]] inline Symmetric<Lanes<Number>> load_metric(const LinkGroup<Number>& group,
+[[gnu::always_inline]] inline Symmetric<Lanes<Number>> load_metric(const MetricGroup<Number>& group,
                                                                    std::size_t first) {
     const auto load = [&](int k) { return Lanes<Number>::load(group.G[k] + first); };
     return {load(0), load(1), load(2), load(3), load(4), load(5)};
@@ -39,7 +39,7 @@ template <class Number>
 /// given volume ratio.
 template <class Law, class Number>
 [[gnu::always_inline]] inline LinkStrain<Lanes<Number>> strain_of_links(
-    const LinkGroup<Number>& group, [[maybe_unused]] const FibreGroup<Number>* fibres,
+    const MetricGroup<Number>& group, [[maybe_unused]] const FibreGroup<Number>* fibres,
     std::size_t first, const std::array<Lanes<Number>, 6>& dl, Lanes<Number> volume_ratio) {
     using Scalar = Lanes<Number>;
     const Symmetric<Scalar> G = load_metric(group, first);
@@ -80,7 +80,7 @@ template <class Law, class Number>
 /// The function has more than 60 lines, since its values have to stay in registers.
 template <class Law, class Number>
 [[gnu::always_inline]] inline LinkVectors<Number> link_forces(
-    const Law& law, double J0, const LinkGroup<Number>& group,
+    const Law& law, double J0, const MetricGroup<Number>& group,
     [[maybe_unused]] const FibreGroup<Number>* fibres, std::size_t first,
     const LinkVectors<Number>& edges) {
     using Scalar = Lanes<Number>;

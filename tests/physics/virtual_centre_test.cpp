@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
+#include <numeric>
 
 #include "incise/physics/elements/spectrum.h"
 #include "incise/physics/elements/virtual_centre_kernel.h"
 #include "incise/physics/solve/integrator.h"
 #include "incise/topology/box_mesh.h"
+#include "tests/physics/processors_at_hand.h"
 #include "tests/physics/test_bodies.h"
 #include "tests/physics/test_materials.h"
 
@@ -197,6 +200,49 @@ TEST(VirtualCentre, KeepsMomentaAndBoundsItsStiffness) {
         }
     });
     EXPECT_GT(highest, 0.9);
+}
+
+TEST(VirtualCentre, HasTheForcesOfTheReferenceOnLanesWithTheSameBitsOnEachProcessor) {
+    for_each_kernel_of_cells([](const auto& kernel, auto kind) {
+        constexpr std::size_t n = 19, num_corners = CentreDivision<kind()>::num_corners;
+        test::Random random(6);
+        SimdCentreElements<kind()> lanes;
+        lanes.assign(n, kernel);
+        std::vector<std::uint16_t> corners(num_corners * n);
+        std::iota(corners.begin(), corners.end(), std::uint16_t{0});
+        lanes.set_nodes(corners, static_cast<std::uint16_t>(num_corners * n));
+        std::vector<LocalVector> positions(num_corners * n + 1), expected(positions.size());
+        double scale = 0.0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto X = random_cell<kind()>(random);
+            const auto e = kernel.precompute(X, fibre);
+            lanes.set(i, e, 1.0);
+            // Gentle, at rest, crushed below the threshold, and inverted.
+            const double last = i % 4 == 0 ? 1.1 : i % 4 == 1 ? 1.0 : i % 4 == 2 ? 0.2 : -0.3;
+            const Mat3 F = random_deformation(
+                random, {random.uniform(0.8, 1.2), random.uniform(0.8, 1.2), last});
+            const auto x = i % 4 == 1 ? X : moved<kind()>(X, F, 0.05, random);
+            const auto f = kernel.forces(e, x);
+            for (std::size_t k = 0; k < num_corners; ++k) {
+                positions[num_corners * i + k] = x[k];
+                expected[num_corners * i + k] = f[k];
+                scale = std::max(scale, f[k].norm());
+            }
+        }
+        std::vector<LocalVector> first;
+        for (const Processor processor : processors_at_hand()) {
+            std::vector<LocalVector> forces(positions.size());
+            centre_forces_for<kind()>(processor)(
+                kernel.law, 0.4, lanes.groups(),
+                lanes.fibres().empty() ? nullptr : lanes.fibres().data(), positions.data(),
+                forces.data(), {});
+            for (std::size_t k = 0; k < num_corners * n; ++k)
+                EXPECT_LE((forces[k].vector() - expected[k].vector()).norm(), 1e-11 * scale);
+            if (first.empty()) first = forces;
+            EXPECT_EQ(std::memcmp(forces.data(), first.data(), sizeof(LocalVector) * forces.size()),
+                      0);
+        }
+    });
 }
 
 TEST(VirtualCentre, RefusesWhatHasNoVolumeSomewhere) {

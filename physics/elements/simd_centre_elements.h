@@ -1,0 +1,101 @@
+// The cells of VirtualCentreKernel side by side, in the layout for SIMD. Compiled for each kind of
+// processor: physics/simd.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "incise/physics/elements/centre_division.h"
+#include "incise/physics/elements/local_nodes.h"
+#include "incise/physics/elements/processor.h"
+#include "incise/physics/elements/simd_heml_elements.h"
+
+namespace incise::physics {
+
+/// A group of eight cells, as the force loop reads it.
+template <topology::CellKind kind>
+struct alignas(64) CentreGroup {
+    static constexpr std::size_t size = MetricGroup<double>::size;
+    MetricGroup<double> parts[CentreDivision<kind>::num_parts];
+    double per_volume[size];  ///< 1/volume of the cell, 1/m3
+    std::uint16_t offsets[CentreDivision<kind>::num_corners][size] = {};  ///< see offset_of()
+};
+
+/// The vectors V^-1 a0 of the tetrahedra of a group of cells with fibres, 1/m.
+template <topology::CellKind kind>
+struct CentreFibres {
+    FibreGroup<double> parts[CentreDivision<kind>::num_parts];
+};
+
+/// The cells of a block. Cells are numbered from 0 in the order of the block. All results are the
+/// same bit for bit on every processor.
+template <topology::CellKind kind>
+class SimdCentreElements {
+  public:
+    /// Replaces the contents by `num_elements` cells without values.
+    template <class Kernel>
+    void assign(std::size_t num_elements, const Kernel& kernel) {
+        assign_groups(num_elements, has_fibres(kernel.law));
+    }
+    /// Sets the values of cell `i`, except for its nodes.
+    template <class Element>
+    void set(std::size_t i, const Element& e, double share) {
+        set_cell(i, {e.volumes, e.inverse_edges, e.volume, e.fibre}, share);
+    }
+    /// Sets the nodes of all cells; see set_offsets_of_lanes().
+    void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare) {
+        set_offsets_of_lanes(groups_, corners, spare);
+    }
+
+    /// Adds the forces of the cells to those of their nodes. They equal those of the kernel within
+    /// rounding.
+    /// @param kernel     the kernel of assign()
+    /// @param positions  m, by local number
+    /// @param forces     N, by local number
+    /// @param next       memory to prefetch; see ElementBlock::compute_forces
+    template <class Kernel>
+    void add_forces(const Kernel& kernel, const LocalVector* positions, LocalVector* forces,
+                    std::span<const std::byte> next) const {
+        add_forces_of(kernel.law, kernel.inversion_threshold, positions, forces, next);
+    }
+    /// Returns the memory of the cells that add_forces() reads first.
+    std::span<const std::byte> bytes() const { return std::as_bytes(std::span(groups_)); }
+
+    std::span<const CentreGroup<kind>> groups() const { return groups_; }
+    std::span<const CentreFibres<kind>> fibres() const { return fibres_; }
+
+  private:
+    static constexpr std::size_t num_parts = CentreDivision<kind>::num_parts;
+    struct Cell {
+        const std::array<double, num_parts>& volumes;
+        const std::array<Eigen::Matrix3d, num_parts>& inverse_edges;
+        double volume;
+        const Vec3& fibre;
+    };
+    void assign_groups(std::size_t num_elements, bool with_fibres);
+    void set_cell(std::size_t i, const Cell& cell, double share);
+    void add_forces_of(const Law& law, double J0, const LocalVector* positions, LocalVector* forces,
+                       std::span<const std::byte> next) const;
+
+    std::vector<CentreGroup<kind>> groups_;
+    std::vector<CentreFibres<kind>> fibres_;  // empty for a law without fibres
+};
+
+/// Adds the forces of groups. `fibres` is null for a law without fibres.
+template <topology::CellKind kind>
+using AddCentreForces = void(const Law& law, double inversion_threshold,
+                             std::span<const CentreGroup<kind>> groups,
+                             const CentreFibres<kind>* fibres, const LocalVector* positions,
+                             LocalVector* forces, std::span<const std::byte> next);
+/// Returns the function that SimdCentreElements::add_forces calls on a processor.
+template <topology::CellKind kind>
+AddCentreForces<kind>* centre_forces_for(Processor processor);
+
+extern template class SimdCentreElements<topology::CellKind::hexahedron>;
+extern template class SimdCentreElements<topology::CellKind::wedge>;
+extern template class SimdCentreElements<topology::CellKind::pyramid>;
+
+}  // namespace incise::physics
