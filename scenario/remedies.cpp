@@ -19,7 +19,7 @@ std::string remedy_for(const physics::UnsuitableMaterial& misfit) {
     switch (misfit.cause) {
         using enum physics::MaterialMisfit;
         case needs_tetrahedra:
-            return ": give the region a material with method = \"heml\", and without prony";
+            return ": give the region a material with method = \"heml\", and without prony_rule = \"nodal\"";
         case needs_hexahedra:
             return ": give the region a material with method = \"heml\"";
         case needs_cubes:

@@ -12,9 +12,9 @@ namespace incise::physics {
 namespace {
 
 /// Returns by how many values the history of an element begins: those of the stress of its law.
-std::size_t size_of_stress(const Material& material) {
+std::size_t size_of_stress(const Material& material, topology::CellKind kind) {
     const auto* links = std::get_if<HyperElasticLinks>(&material.method);
-    return links ? history_size(material) / (links->prony.size() + 1) : 0;
+    return links ? history_size(material, kind) / (links->prony.size() + 1) : 0;
 }
 
 bool have_like_histories(const Material& a, const Material& b) {
@@ -55,7 +55,8 @@ void Model::set_materials(MaterialTable table, double time) {
             const int region = fragments().region(e);
             const Material& material = material_in(structure_.elements_.materials(), region);
             const bool is_kept = have_like_histories(material_in(before, region), material);
-            for (std::size_t i = size_of_stress(material); i < now.of(e).size(); ++i)
+            for (std::size_t i = size_of_stress(material, fragments().kind(e));
+                 i < now.of(e).size(); ++i)
                 now.of(e)[i] = is_kept && i < history.of(e).size() ? history.of(e)[i] : 0.0;
         }
     }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "incise/base/error.h"
+#include "incise/physics/elements/centre_viscous_kernel.h"
 #include "incise/physics/elements/kernel_block.h"
 #include "incise/physics/elements/virtual_centre_kernel.h"
 
@@ -21,8 +22,11 @@ namespace {
 
 template <CellKind kind>
 std::shared_ptr<ElementBlock> make_centre_block(const HyperElasticLinks& links, double density) {
-    return std::make_shared<KernelBlock<VirtualCentreKernel<kind>>>(
-        VirtualCentreKernel<kind>{links.law, links.inversion_threshold}, density);
+    const VirtualCentreKernel<kind> elastic{links.law, links.inversion_threshold};
+    if (links.prony.empty())
+        return std::make_shared<KernelBlock<VirtualCentreKernel<kind>>>(elastic, density);
+    return std::make_shared<KernelBlock<CentreViscousKernel<kind>>>(
+        CentreViscousKernel<kind>(elastic, links.prony), density);
 }
 
 std::shared_ptr<ElementBlock> make_block(const Material& material, Precision precision,
@@ -88,12 +92,22 @@ void for_each_range(std::span<const std::uint32_t> nodes, Visit visit) {
 
 }  // namespace
 
-std::size_t history_size(const Material& material) {
+std::size_t history_size(const Material& material, CellKind kind) {
     const auto* links = std::get_if<HyperElasticLinks>(&material.method);
     if (!links || links->prony.empty()) return 0;
-    return links->prony_rule == PronyRule::nodal
-               ? NodalViscousKernel::history_size(links->prony.size())
-               : ViscousKernel::history_size(links->prony.size());
+    const std::size_t num_terms = links->prony.size();
+    switch (kind) {
+        case CellKind::hexahedron:
+            return CentreViscousKernel<CellKind::hexahedron>::history_size(num_terms);
+        case CellKind::wedge:
+            return CentreViscousKernel<CellKind::wedge>::history_size(num_terms);
+        case CellKind::pyramid:
+            return CentreViscousKernel<CellKind::pyramid>::history_size(num_terms);
+        case CellKind::tetrahedron:
+            break;
+    }
+    return links->prony_rule == PronyRule::nodal ? NodalViscousKernel::history_size(num_terms)
+                                                 : ViscousKernel::history_size(num_terms);
 }
 
 ElementStore::ElementStore(const FragmentMesh& fragments, const topology::Mesh& mesh,
@@ -109,6 +123,8 @@ ElementStore::ElementStore(const FragmentMesh& fragments, const topology::Mesh& 
         table_.fibres.resize(fragments.element_capacity(), Vec3::Zero());
         fibres_.emplace(fragments, std::exchange(table_.fibres, {}));
     }
+    for (std::size_t e = 0; e < fragments.element_capacity(); ++e)  // also if an edit removed it
+        has_kind_[static_cast<std::size_t>(fragments.kind(ElementId(e)))] = true;
     for (const ElementId e : fragments.elements()) {
         require_law(fragments, mesh, e);
         insert(fragments, e);
@@ -140,8 +156,9 @@ void ElementStore::require_law(const FragmentMesh& fragments, const topology::Me
                is_a + "; the method mass-spring needs tetrahedra");
     const auto* links = std::get_if<HyperElasticLinks>(&material.method);
     if (links && kind != CellKind::tetrahedron) {
-        if (!links->prony.empty())
-            refuse(MaterialMisfit::needs_tetrahedra, is_a + "; a Prony series needs tetrahedra");
+        if (!links->prony.empty() && links->prony_rule == PronyRule::nodal)
+            refuse(MaterialMisfit::needs_tetrahedra,
+                   is_a + "; the nodal rule of a Prony series needs tetrahedra");
         if (const auto reason = why_no_centre_cell(fragments, e))
             refuse(MaterialMisfit::other, of_region + *reason);
     }
@@ -332,7 +349,9 @@ std::vector<std::shared_ptr<const ElementBlock>> ElementStore::share_blocks() co
 std::size_t ElementStore::history_size() const {
     std::size_t most = 0;
     for (const Material& material : table_.materials)
-        most = std::max(most, physics::history_size(material));
+        for (std::size_t k = 0; k < has_kind_.size(); ++k)
+            if (has_kind_[k])
+                most = std::max(most, physics::history_size(material, static_cast<CellKind>(k)));
     return most;
 }
 

@@ -37,9 +37,9 @@ struct MaterialTable {
     Precision precision = Precision::double_precision;
 };
 
-/// Returns how many values an element of the material stores in ViscousHistory: the stress of its
-/// law, then as much for each term of its Prony series. 0 without viscosity.
-std::size_t history_size(const Material& material);
+/// Returns how many values an element of the material and kind stores in ViscousHistory: the stress
+/// of its law, then as much for each term of its Prony series. 0 without viscosity.
+std::size_t history_size(const Material& material, topology::CellKind kind);
 
 /// Why a material does not suit an element.
 enum class MaterialMisfit {
@@ -112,7 +112,7 @@ class ElementStore {
     }
 
     /// Returns the size of ViscousHistory: the largest number of values that an element of any of
-    /// the materials stores; 0 if none is viscous.
+    /// the materials, and of a kind that the body has or had, stores; 0 if none is viscous.
     std::size_t history_size() const;
 
     /// Advances the history of all elements from the positions `before` to `positions` (m, by node
@@ -213,6 +213,7 @@ class ElementStore {
     ElementInput input_of(const fragments::FragmentMesh& fragments, ElementId e) const;
 
     MaterialTable table_;  // without the fibres
+    std::array<bool, topology::num_cell_kinds> has_kind_{};
     std::optional<topology::ElementField<ElementId, Vec3>> fibres_;
     std::vector<std::shared_ptr<ElementBlock>>
         blocks_;                               // by range of ids, then by material, then by kind

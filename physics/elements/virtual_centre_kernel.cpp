@@ -2,9 +2,9 @@
 #include "incise/physics/elements/virtual_centre_kernel.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "incise/base/error.h"
+#include "incise/physics/elements/centre_state.h"
 #include "incise/physics/elements/spectrum.h"
 #include "incise/physics/laws/stiffening.h"
 #include "incise/topology/geometry.h"
@@ -12,111 +12,6 @@
 namespace incise::physics {
 
 using topology::CellKind;
-
-namespace {
-
-/// The function g of VirtualCentreKernel as g'/g, and its derivative.
-struct GrowthRate {
-    double rate, slope;
-};
-GrowthRate growth_rate(double J, double threshold) {
-    if (J >= threshold) return {1.0 / J, -1.0 / (J * J)};
-    return {1.0 / threshold, 0.0};
-}
-double grown(double J, double threshold) {
-    return J >= threshold ? J : threshold * std::exp((J - threshold) / threshold);
-}
-
-/// The deformation of one tetrahedron of a cell.
-struct PartState {
-    Mat3 H;            ///< F - 1
-    double J;          ///< its own volume ratio
-    double scale;      ///< (g(Jm)/g(J))^(1/3)
-    Deformation mean;  ///< of scale F
-};
-
-Deformation deformation_of(const Mat3& H, const Vec3& fibre) {
-    Deformation d;
-    d.F = Mat3::Identity() + H;
-    d.twice_strain = H + H.transpose() + H.transpose() * H;
-    d.strain = {d.twice_strain.trace(), d.twice_strain.squaredNorm(), d.F.determinant(),
-                fibre.dot(d.twice_strain * fibre)};
-    return d;
-}
-
-template <CellKind kind>
-struct CellState {
-    using Kernel = VirtualCentreKernel<kind>;
-    using Division = CentreDivision<kind>;
-    static constexpr auto parts = Division::parts();
-
-    std::array<PartState, Kernel::num_parts> of_part;
-    double mean_J = 0.0;
-
-    CellState(const Kernel& kernel, const typename Kernel::Element& e,
-              const typename Kernel::Corners& x) {
-        typename Kernel::Corners u;
-        for (std::size_t k = 0; k < u.size(); ++k) u[k] = x[k] - e.rest[k];
-        const auto at = Division::points(u);
-        for (std::size_t t = 0; t < parts.size(); ++t) {
-            const auto& p = parts[t];
-            Mat3 edges;
-            edges << at[p[1]] - at[p[0]], at[p[2]] - at[p[0]], at[p[3]] - at[p[0]];
-            of_part[t].H = edges * e.inverse_edges[t];
-            of_part[t].J = (Mat3::Identity() + of_part[t].H).determinant();
-            mean_J += e.volumes[t] * of_part[t].J;
-        }
-        mean_J /= e.volume;
-        const double of_mean = grown(mean_J, kernel.inversion_threshold);
-        for (PartState& part : of_part) {
-            part.scale = std::cbrt(of_mean / grown(part.J, kernel.inversion_threshold));
-            Mat3 H = part.scale * part.H;
-            H.diagonal().array() += part.scale - 1.0;
-            part.mean = deformation_of(H, e.fibre);
-        }
-    }
-};
-
-/// The first Piola-Kirchhoff stress of a law, and a third of its product with F.
-struct PartStress {
-    Mat3 P;
-    double pressure;
-};
-PartStress stress_of(const LawResponse<double>& r, const Deformation& d, const Vec3& fibre) {
-    PartStress s;
-    s.P = d.F * second_stress_without_volume(r, d.twice_strain, fibre) + r.w_J * cofactors(d.F);
-    s.pressure = s.P.cwiseProduct(d.F).sum() / 3.0;
-    return s;
-}
-
-Mat3 cofactor_change(const Mat3& F, const Mat3& by) {
-    Mat3 change;
-    change << by.col(1).cross(F.col(2)) + F.col(1).cross(by.col(2)),
-        by.col(2).cross(F.col(0)) + F.col(2).cross(by.col(0)),
-        by.col(0).cross(F.col(1)) + F.col(0).cross(by.col(1));
-    return change;
-}
-
-/// What the tangent of a cell needs of one of its tetrahedra.
-struct PartTangent {
-    LawResponse<double> r;
-    Eigen::Matrix4d by_strain;  ///< derivatives of w_a, w_b, w_J and w_f by a, b, J and f
-    PartStress stress;
-    Mat3 F, cof_F, second_stress;
-    GrowthRate growth;
-};
-
-/// Adds the forces of a stress in one tetrahedron to those at its points.
-template <class Points>
-void add_forces(const Mat3& P, double volume, const Mat3& inverse_edges,
-                const std::array<std::size_t, 4>& part, Points& f) {
-    const Mat3 of_corners = -volume * (P * inverse_edges.transpose());
-    f[part[0]] -= of_corners.rowwise().sum();
-    for (std::size_t k = 1; k < 4; ++k)
-        f[part[k]] += of_corners.col(static_cast<Eigen::Index>(k - 1));
-}
-
-}  // namespace
 
 template <CellKind kind>
 std::optional<std::string> VirtualCentreKernel<kind>::why_no_cell(const Corners& X) {
@@ -178,30 +73,19 @@ template <CellKind kind>
 typename VirtualCentreKernel<kind>::Corners VirtualCentreKernel<kind>::forces(
     const Element& e, const Corners& x) const {
     const CellState<kind> state(*this, e, x);
-    std::array<PartStress, num_parts> stress;
-    double mean_pressure = 0.0;
+    std::array<Mat3, num_parts> stresses;
     for (std::size_t t = 0; t < num_parts; ++t) {
         const Deformation& d = state.of_part[t].mean;
-        stress[t] = stress_of(response(law, d.strain, inversion_threshold), d, e.fibre);
-        mean_pressure += e.volumes[t] * stress[t].pressure;
+        stresses[t] = stress_of(response(law, d.strain, inversion_threshold), d, e.fibre).P;
     }
-    mean_pressure *= growth_rate(state.mean_J, inversion_threshold).rate / e.volume;
-    typename Division::Points f;
-    f.fill(Vec3::Zero());
-    for (std::size_t t = 0; t < num_parts; ++t) {
-        const PartState& part = state.of_part[t];
-        const double volumetric =
-            mean_pressure - growth_rate(part.J, inversion_threshold).rate * stress[t].pressure;
-        const Mat3 P = part.scale * stress[t].P + volumetric * cofactors(Mat3::Identity() + part.H);
-        add_forces(P, e.volumes[t], e.inverse_edges[t], CellState<kind>::parts[t], f);
-    }
-    return Division::gathered(f);
+    return forces_of_stresses(*this, e, state, stresses);
 }
 
 // Each column is the change of the forces by a motion of one corner along one axis.
 template <CellKind kind>
 typename VirtualCentreKernel<kind>::Tangent VirtualCentreKernel<kind>::tangent(
-    const Element& e, const Corners& x) const {
+    const Element& e, const Corners& x, double share,
+    const std::array<Mat3, num_parts>* constant) const {
     const CellState<kind> state(*this, e, x);
     const auto& parts = CellState<kind>::parts;
     std::array<PartTangent, num_parts> of_part;
@@ -210,14 +94,20 @@ typename VirtualCentreKernel<kind>::Tangent VirtualCentreKernel<kind>::tangent(
         PartTangent& p = of_part[t];
         const Deformation& d = state.of_part[t].mean;
         const LawResponse<Dual> r = response(law, with_derivatives(d.strain), inversion_threshold);
-        p.r = {r.w.value, r.w_a.value, r.w_b.value, r.w_J.value, r.w_f.value};
+        p.r = {share * r.w.value, share * r.w_a.value, share * r.w_b.value, share * r.w_J.value,
+               share * r.w_f.value};
         p.by_strain.col(0) = r.w_a.gradient;
         p.by_strain.col(1) = r.w_b.gradient;
         p.by_strain.col(2) = r.w_J.gradient;
         p.by_strain.col(3) = r.w_f.gradient;
-        p.by_strain = (0.5 * (p.by_strain + p.by_strain.transpose())).eval();
+        p.by_strain = (0.5 * share * (p.by_strain + p.by_strain.transpose())).eval();
         p.stress = stress_of(p.r, d, e.fibre);
         p.second_stress = second_stress_without_volume(p.r, d.twice_strain, e.fibre);
+        if (constant) {
+            p.second_stress += (*constant)[t];
+            p.stress.P += d.F * (*constant)[t];
+            p.stress.pressure = p.stress.P.cwiseProduct(d.F).sum() / 3.0;
+        }
         p.F = Mat3::Identity() + state.of_part[t].H;
         p.cof_F = cofactors(p.F);
         p.growth = growth_rate(state.of_part[t].J, inversion_threshold);

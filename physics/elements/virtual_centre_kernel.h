@@ -66,7 +66,12 @@ struct VirtualCentreKernel {
     /// Returns the nodal forces, N: minus the gradient of energy().
     Corners forces(const Element& e, const Corners& x) const;
     /// Returns minus the derivative of the forces, N/m, rows and columns by corner, then by axis.
-    Tangent tangent(const Element& e, const Corners& x) const;
+    /// @param e         the cell
+    /// @param x         its corners, m
+    /// @param share     of the law in the forces
+    /// @param constant  second Piola-Kirchhoff stresses on F'_t that act beside it, Pa; null: none
+    Tangent tangent(const Element& e, const Corners& x, double share = 1.0,
+                    const std::array<Mat3, num_parts>* constant = nullptr) const;
 
     /// Returns tangent() at rest, in a fraction of the time.
     Tangent rest_tangent(const Element& e) const;

@@ -62,11 +62,11 @@ inline void expect_equal(const ModelSnapshot& a, const ModelSnapshot& b) {
     EXPECT_EQ(a.totals, b.totals);
 }
 
-/// The first two laws of those that need no fibres, and of fibres the last, for cells of any kind.
+/// A law, a viscous one, and one with fibres, for cells of any kind.
 inline std::vector<Material> materials_of_any_cells() {
     const auto laws = test_laws();
     return {{950.0, HyperElasticLinks{laws[3].law}},
-            {1010.0, HyperElasticLinks{laws[14].law}},
+            {1010.0, HyperElasticLinks{laws[14].law, 0.4, {{0.3, 0.01}, {0.2, 1.0}}}},
             {1040.0, HyperElasticLinks{laws.back().law}}};
 }
 

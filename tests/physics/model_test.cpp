@@ -227,9 +227,9 @@ TEST(Model, RefusesCellsThatItsMethodDoesNotTake) {
             const Mesh mesh = Mesh::build(data).mesh;
             EXPECT_NO_THROW(Model(mesh, table_of_one_law(soft_law)));
             const std::vector<PronyTerm> prony{{0.3, 0.05}};
-            for (const auto& table :
-                 {table_of_one_material(MassSprings{8e3}),
-                  table_of_one_material(HyperElasticLinks{soft_law, 0.4, prony})}) {
+            for (const auto& table : {table_of_one_material(MassSprings{8e3}),
+                                      table_of_one_material(HyperElasticLinks{soft_law, 0.4, prony,
+                                                                              PronyRule::nodal})}) {
                 const std::string text = message_of([&] { Model(mesh, table); });
                 EXPECT_TRUE(has(text, "element ") && has(text, "needs tetrahedra")) << text;
             }

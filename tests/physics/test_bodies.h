@@ -75,14 +75,16 @@ struct NamedMaterial {
 inline std::vector<NamedMaterial> materials_of_all_methods() {
     const auto tet = topology::CellKind::tetrahedron, hex = topology::CellKind::hexahedron;
     const std::vector<PronyTerm> prony{{0.3, 0.05}, {0.2, 0.2}};
-    return {{"neo-Hookean", tet, table_of_one_law(soft_law)},
-            {"Ogden", tet, table_of_one_law(Ogden{{{{2500.0, 4.0}, {500.0, -2.0}}}, 2, 8000.0})},
-            {"viscous", tet, table_of_one_material(HyperElasticLinks{soft_law, 0.4, prony})},
-            {"viscous by the nodal rule", tet,
-             table_of_one_material(HyperElasticLinks{soft_law, 0.4, prony, PronyRule::nodal})},
-            {"springs", tet, table_of_one_material(MassSprings{8e3})},
-            {"neo-Hookean hexahedra", hex, table_of_one_law(soft_law)},
-            {"hybrid springs", hex, table_of_one_material(HybridSprings{3e3, 1e4, 1.0})}};
+    return {
+        {"neo-Hookean", tet, table_of_one_law(soft_law)},
+        {"Ogden", tet, table_of_one_law(Ogden{{{{2500.0, 4.0}, {500.0, -2.0}}}, 2, 8000.0})},
+        {"viscous", tet, table_of_one_material(HyperElasticLinks{soft_law, 0.4, prony})},
+        {"viscous by the nodal rule", tet,
+         table_of_one_material(HyperElasticLinks{soft_law, 0.4, prony, PronyRule::nodal})},
+        {"springs", tet, table_of_one_material(MassSprings{8e3})},
+        {"neo-Hookean hexahedra", hex, table_of_one_law(soft_law)},
+        {"viscous hexahedra", hex, table_of_one_material(HyperElasticLinks{soft_law, 0.4, prony})},
+        {"hybrid springs", hex, table_of_one_material(HybridSprings{3e3, 1e4, 1.0})}};
 }
 
 /// 0.2 x 0.1 x 0.1 m of 4 x 2 x 2 bricks.

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "incise/physics/elements/centre_viscous_kernel.h"
 #include "incise/physics/elements/spectrum.h"
 #include "incise/physics/elements/virtual_centre_kernel.h"
 #include "incise/physics/solve/integrator.h"
@@ -242,6 +243,70 @@ TEST(VirtualCentre, HasTheForcesOfTheReferenceOnLanesWithTheSameBitsOnEachProces
             EXPECT_EQ(std::memcmp(forces.data(), first.data(), sizeof(LocalVector) * forces.size()),
                       0);
         }
+    });
+}
+
+// In an affine state each tetrahedron of a cell is that of ViscousKernel; else the forces at the
+// end of a step are the gradient of their potential, and the tangent is their difference.
+TEST(CentreViscous, IsTheViscosityOfHemlInEachTetrahedron) {
+    const std::vector<PronyTerm> prony{{0.3, 0.05}, {0.2, 0.5}};
+    for_each_kernel_of_cells([&](const auto& elastic, auto kind) {
+        test::Random random(8);
+        CentreViscousKernel<kind()> kernel(elastic, prony);
+        ViscousKernel of_tetrahedra(HemlKernel{elastic.law, 0.4}, prony);
+        const auto X = random_cell<kind()>(random);
+        const auto e = kernel.precompute(X, fibre);
+        const Tetrahedron Y = random_tetrahedron(random);
+        const auto t = of_tetrahedra.precompute(Y, fibre);
+        std::vector<double> memory(kernel.history_size(2)),
+            memory_of_t(of_tetrahedra.history_size(2));
+        auto last = X;
+        Tetrahedron last_of_t = Y;
+        for (const double dt : {0.01, 0.03, 0.2}) {
+            const Mat3 F = gentle_deformation(random, 0.15);
+            const auto x = moved<kind()>(X, F, 0.0, random);
+            kernel.begin_step(dt);
+            of_tetrahedra.begin_step(dt);
+            const double taken = kernel.advance(e, last, x, memory);
+            const double expected =
+                of_tetrahedra.advance(t, last_of_t, deformed(Y, F), memory_of_t) / t.volume;
+            EXPECT_NEAR(taken, e.volume * expected, 1e-9 * e.volume * (std::abs(expected) + 1e2));
+            for (std::size_t k = 0; k < 6; ++k)
+                EXPECT_NEAR(memory[6 * CentreDivision<kind()>::num_parts + k], memory_of_t[6 + k],
+                            1e-8 * (std::abs(memory_of_t[6 + k]) + 1e2));
+            last = x;
+            last_of_t = deformed(Y, F);
+        }
+        auto x = moved<kind()>(X, gentle_deformation(random, 0.1), 0.05, random);
+        const auto end = kernel.end_of_step(memory, 0.02);
+        const auto f = kernel.forces(e, x, end);
+        const auto K = element_tangent(kernel, e, x, end);
+        double scale = 0.0;
+        for (const Vec3& force : f) scale = std::max(scale, force.norm());
+        const double h = 1e-4 * (X[1] - X[0]).norm();
+        for (std::size_t k = 0; k < x.size(); ++k)
+            for (int c = 0; c < 3; ++c) {
+                const double at = x[k][c];
+                const auto shifted = [&](double d, auto value) {
+                    x[k][c] = at + d;
+                    const auto result = value();
+                    x[k][c] = at;
+                    return result;
+                };
+                const auto potential = [&] { return kernel.potential(e, x, end); };
+                EXPECT_NEAR(f[k][c],
+                            -(8.0 * (shifted(h, potential) - shifted(-h, potential)) -
+                              (shifted(2 * h, potential) - shifted(-2 * h, potential))) /
+                                (12.0 * h),
+                            1e-6 * scale);
+                const auto first = [&] { return kernel.forces(e, x, end)[0]; };
+                const Vec3 change = (8.0 * (shifted(h, first) - shifted(-h, first)) -
+                                     (shifted(2 * h, first) - shifted(-2 * h, first))) /
+                                    (12.0 * h);
+                EXPECT_LE((K.template block<3, 1>(0, static_cast<Eigen::Index>(3 * k) + c) + change)
+                              .norm(),
+                          1e-6 * K.norm());
+            }
     });
 }
 

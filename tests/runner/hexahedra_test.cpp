@@ -200,17 +200,19 @@ fix = "xyz"
 
     expect_warnings_near_hexahedra(folder, head + materials);
 
-    // One law serves both kinds, but not with viscosity.
+    // One law serves both kinds, but not with viscosity by the nodal rule.
     EXPECT_NO_THROW(Simulation(folder.scenario(head + "[[material]]\n" + soft)));
     try {
         Simulation other(folder.scenario(head + "[[material]]\n" + soft +
-                                         "prony = [{ alpha = 0.3, tau = 0.1 }]\n"));
+                                         "prony = [{ alpha = 0.3, tau = 0.1 }]\n"
+                                         "prony_rule = \"nodal\"\n"));
         ADD_FAILURE() << "accepted";
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what())
-                      .find(" is a hexahedron; a Prony series needs tetrahedra: give the region a "
-                            "material with method = \"heml\", and without prony"),
-                  std::string::npos)
+        EXPECT_NE(
+            std::string(error.what())
+                .find(" is a hexahedron; the nodal rule of a Prony series needs tetrahedra: give "
+                      "the region a material with method = \"heml\""),
+            std::string::npos)
             << error.what();
     }
 }
