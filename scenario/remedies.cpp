@@ -19,7 +19,8 @@ std::string remedy_for(const physics::UnsuitableMaterial& misfit) {
     switch (misfit.cause) {
         using enum physics::MaterialMisfit;
         case needs_tetrahedra:
-            return ": give the region a material with method = \"heml\", and without prony_rule = \"nodal\"";
+            return ": give the region a material with method = \"heml\", and without "
+                   "prony_rule = \"nodal\"";
         case needs_hexahedra:
             return ": give the region a material with method = \"heml\"";
         case needs_cubes:
@@ -42,7 +43,7 @@ std::string remedy_for(const physics::MotionFailure& failure) {
         case load_too_large:
             return "; make it smaller or bring it up slowly";
         case crushed_element:
-            return gentler + "for tetrahedra law = \"stable-neo-hookean\", which stiffens least";
+            return gentler + "with method heml law = \"stable-neo-hookean\", which stiffens least";
         case stiffened_tissue:
             return gentler + "a finer mesh there";
         case no_implicit_step:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/scenario/source_mesh.h"
 
+#include <algorithm>
 #include <set>
 
 #include "incise/base/error.h"
@@ -31,9 +32,13 @@ std::vector<std::string> arrays_of(const std::vector<MaterialSpec>& materials) {
 
 /// Throws MemoryError if the machine has too little memory for the box. Without this check the
 /// system would kill the process.
-void require_memory_for(const BoxMeshSpec& box, const std::string& location) {
+void require_memory_for(const BoxMeshSpec& box, const std::vector<MaterialSpec>& materials,
+                        const std::string& location) {
     const bool is_tetrahedra = box.element == topology::CellKind::tetrahedron;
-    const double bytes_per_element = is_tetrahedra ? 1200.0 : 2500.0;  // map, arrays, elements
+    const bool are_springs = std::ranges::all_of(
+        materials, [](const MaterialSpec& material) { return material.method == Method::hybmss; });
+    // Arrays of the mesh, elements, contact.
+    const double bytes_per_element = is_tetrahedra ? 900.0 : are_springs ? 1500.0 : 4700.0;
     const double elements = (is_tetrahedra ? 6.0 : 1.0) * box.cells[0] *
                             static_cast<double>(box.cells[1]) * box.cells[2];
     if (const auto lack = io::lack_of_memory(bytes_per_element * elements))
@@ -62,7 +67,7 @@ io::MeshFile load_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& ma
         return file;
     }
     const auto& box = std::get<BoxMeshSpec>(spec.source);
-    require_memory_for(box, spec.location);
+    require_memory_for(box, materials, spec.location);
     return {topology::box_mesh(box.element, scale * box.origin, scale * box.size, box.cells), {}};
 }
 

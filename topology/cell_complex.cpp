@@ -14,7 +14,9 @@ using Dart = CellComplex::Dart;
 namespace {
 
 /// A direction from a corner of a cell to another one, as one number.
-std::size_t key_of(int from, int to) { return static_cast<std::size_t>(max_corners * from + to); }
+std::size_t key_of(int from, int to) {
+    return std::size_t{max_corners} * static_cast<std::size_t>(from) + static_cast<std::size_t>(to);
+}
 
 }  // namespace
 
@@ -134,6 +136,20 @@ void CellComplex::remove(CellId e, std::vector<Dart>& opened) {
     faces(e, others);
     for (const Dart f : others)
         if (across(f) != nullptr) opened.push_back(open(f));
+    // Vertices that another cell has without a joined face get one of its darts: rare, so that a
+    // search of the whole map is good enough.
+    std::unordered_set<Vertex> alone;
+    for (const Dart d : of_cell)
+        if (const Vertex v = map_.attribute<0>(d); cell(map_.dart_of_attribute<0>(v)) == e)
+            alone.insert(v);
+    std::unordered_map<Vertex, std::size_t> counts;
+    for (const Dart d : of_cell) ++counts[map_.attribute<0>(d)];
+    std::erase_if(alone, [&](Vertex v) {
+        return map_.get_attribute_ref_counting<0>(v) == counts[v];  // it goes with the cell
+    });
+    for (auto d = map_.darts().begin(); !alone.empty() && d != map_.darts().end(); ++d)
+        if (cell(d) != e && alone.erase(map_.attribute<0>(d)) > 0)
+            map_.set_dart_of_attribute<0>(map_.attribute<0>(d), d);
     for (const Dart d : of_cell) erase(d);
     darts_[e.index()] = nullptr;
 }
@@ -306,6 +322,7 @@ void CellComplex::join_cells(Dart d) {
     const Volume volume = map_.attribute<3>(across(d));
     const Dart stays = opposite(across(d));
     std::vector<Dart> near;
+    near.reserve(far.size());
     for (const Dart f : far) near.push_back(across(f));
     std::vector<Dart> moved;
     for_each_dart_of_cell(d, [&](Dart f) { moved.push_back(f); });
@@ -396,6 +413,9 @@ std::vector<std::string> CellComplex::faults(double least_volume) const {
         if (const double v = volume(e); !(v >= least_volume))
             report("cell ", i, " has a volume of ", v, " m3");
     }
+    for (const auto& [v, count] : starts)
+        if (map().attribute<0>(map().dart_of_attribute<0>(v)) != v)
+            report("vertex ", map().info_of_attribute<0>(v).value, " has a dart of another one");
     for (const auto& [v, count] : starts)
         if (map().get_attribute_ref_counting<0>(v) != count)
             report("vertex ", map().info_of_attribute<0>(v).value, " is counted wrong");

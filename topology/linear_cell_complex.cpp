@@ -268,7 +268,7 @@ class ComplexReader {
         std::vector<Vec3> x;
         for (const std::int64_t p : cell.corners)
             x.push_back(data_.points[static_cast<std::size_t>(p)]);
-        if (signed_volume(cell.kind, x) >= 0.0) return;
+        if (!(signed_volume(cell.kind, x) < 0.0)) return;  // import says what is not finite
         const auto before = cell.corners;
         for (std::size_t k = 0; k < before.size(); ++k)
             cell.corners[k] = before[static_cast<std::size_t>(traits(cell.kind).mirrored[k])];

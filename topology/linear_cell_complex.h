@@ -39,7 +39,8 @@ struct ComplexCell {
     /// corners their places. If the volume has no such dart, any fitting order is taken.
     std::array<VertexId, 2> first_edge = {};
     /// The rest positions of the corners of the tetrahedron that the cell is a part of, m; none for
-    /// a cell that is whole. See Carriers.
+    /// a cell that is whole, and for one that is no tetrahedron. Cells with the same corners here
+    /// are parts of one carrier. See Carriers.
     std::optional<std::array<Vec3, 4>> carrier = {};
     bool operator==(const ComplexCell&) const = default;
 };

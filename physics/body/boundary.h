@@ -55,8 +55,10 @@ class Boundary {
     const Loads& loads() const { return loads_; }
     double damping() const { return damping_; }  ///< mass-proportional, 1/s
     /// Returns a number that grows when a constraint, a load or a force term is added, replaced or
-    /// removed, and when gravity changes.
+    /// removed.
     std::uint64_t version() const { return version_; }
+    /// Returns a number that grows when gravity is set.
+    std::uint64_t gravity_version() const { return gravity_version_; }
 
     /// Appends a constraint to the list. Throws InputError, and changes nothing, if another
     /// constraint prescribes another value of a component of a node. Cost: O(n) in the nodes of the
@@ -85,7 +87,7 @@ class Boundary {
     /// Sets the gravity, m/s2.
     void set_gravity(const Vec3& gravity) {
         loads_.set_gravity(gravity);
-        ++version_;
+        ++gravity_version_;
     }
     void set_damping(double damping) { damping_ = damping; }  ///< 1/s
 
@@ -158,7 +160,7 @@ class Boundary {
     std::vector<std::unique_ptr<ForceTerm>> added_terms_;
     std::vector<Vec3> outer_forces_;
     std::vector<Reaction> reactions_;  // by constraint
-    std::uint64_t version_ = 0;
+    std::uint64_t version_ = 0, gravity_version_ = 0;
 };
 
 /// Reads what Boundary::save() wrote. Throws InputError for what does not fit the mesh.

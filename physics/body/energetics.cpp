@@ -36,7 +36,7 @@ NodeSums Energetics::sums_of(NodeRange range) const {
 
 Totals Energetics::totals() const {
     const NodeSums sums =
-        node_sums_.value(state_.version() + boundary_.version(), structure_.masses().size(),
+        node_sums_.value(state_.version() + boundary_.gravity_version(), structure_.masses().size(),
                          workers_, [&](NodeRange range) { return sums_of(range); });
     Totals t;
     t.mass = sums[NodeSum::mass].value();

@@ -36,12 +36,12 @@ class Structure {
     const ElementStore& elements() const { return elements_; }
     std::span<const double> masses() const { return masses_; }  ///< lumped, kg
     double size() const { return size_; }  ///< diagonal of the box around the rest mesh, m
-    /// Returns a number that grows with each edit, also with each undo of an edit, and when
-    /// materials change.
+    /// Returns a number that changes with each edit, also with each undo of an edit, and when
+    /// materials change: see Model::version().
     std::uint64_t version() const { return version_; }
 
-    /// Returns the mass of the material at each node of the mesh, kg: a quarter of that of each
-    /// tetrahedron, and an eighth of that of each hexahedron. Cost: O(n).
+    /// Returns the mass of the material at each node of the mesh, kg: an equal part of that of each
+    /// cell, such as a quarter of that of a tetrahedron. Cost: O(n).
     std::vector<double> mesh_masses() const;
     /// Returns the density of the material of a region, kg/m3.
     double density(int region) const { return elements_.density(region); }

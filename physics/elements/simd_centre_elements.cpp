@@ -10,27 +10,44 @@ using topology::CellKind;
 
 namespace plain {
 AddCentreForces<CellKind::hexahedron> add_centre_forces;
+CentreStiffening<CellKind::hexahedron> centre_stiffening;
 AddCentreForces<CellKind::wedge> add_centre_forces;
+CentreStiffening<CellKind::wedge> centre_stiffening;
 AddCentreForces<CellKind::pyramid> add_centre_forces;
+CentreStiffening<CellKind::pyramid> centre_stiffening;
 }  // namespace plain
 namespace avx2 {
 AddCentreForces<CellKind::hexahedron> add_centre_forces;
+CentreStiffening<CellKind::hexahedron> centre_stiffening;
 AddCentreForces<CellKind::wedge> add_centre_forces;
+CentreStiffening<CellKind::wedge> centre_stiffening;
 AddCentreForces<CellKind::pyramid> add_centre_forces;
+CentreStiffening<CellKind::pyramid> centre_stiffening;
 }  // namespace avx2
 namespace avx512 {
 AddCentreForces<CellKind::hexahedron> add_centre_forces;
+CentreStiffening<CellKind::hexahedron> centre_stiffening;
 AddCentreForces<CellKind::wedge> add_centre_forces;
+CentreStiffening<CellKind::wedge> centre_stiffening;
 AddCentreForces<CellKind::pyramid> add_centre_forces;
+CentreStiffening<CellKind::pyramid> centre_stiffening;
 }  // namespace avx512
 
 template <CellKind kind>
 AddCentreForces<kind>* centre_forces_for(Processor processor) {
     return INCISE_CHOOSE(processor, AddCentreForces<kind>, add_centre_forces);
 }
+
+template <CellKind kind>
+CentreStiffening<kind>* centre_stiffening_for(Processor processor) {
+    return INCISE_CHOOSE(processor, CentreStiffening<kind>, centre_stiffening);
+}
 template AddCentreForces<CellKind::hexahedron>* centre_forces_for(Processor processor);
+template CentreStiffening<CellKind::hexahedron>* centre_stiffening_for(Processor processor);
 template AddCentreForces<CellKind::wedge>* centre_forces_for(Processor processor);
+template CentreStiffening<CellKind::wedge>* centre_stiffening_for(Processor processor);
 template AddCentreForces<CellKind::pyramid>* centre_forces_for(Processor processor);
+template CentreStiffening<CellKind::pyramid>* centre_stiffening_for(Processor processor);
 
 template <CellKind kind>
 void SimdCentreElements<kind>::assign_groups(std::size_t num_elements, bool with_fibres) {
@@ -61,10 +78,24 @@ void SimdCentreElements<kind>::set_cell(std::size_t i, const Cell& cell,
 
 template <CellKind kind>
 void SimdCentreElements<kind>::add_forces_of(const Law& law, double J0,
-                                             const LocalVector* positions, LocalVector* forces,
-                                             std::span<const std::byte> next) const {
+                                             const LocalVector* positions,
+                                             LocalVector* forces) const {
     static AddCentreForces<kind>* const add = centre_forces_for<kind>(processor());
-    add(law, J0, groups_, fibres_.empty() ? nullptr : fibres_.data(), positions, forces, next);
+    add(law, J0, groups_, fibres_.empty() ? nullptr : fibres_.data(), positions, forces);
+}
+
+template <CellKind kind>
+void SimdCentreElements<kind>::set_stiffening_of(const Law& law, double J0,
+                                                 const LocalVector* positions,
+                                                 std::span<double> factors) const {
+    static CentreStiffening<kind>* const compute = centre_stiffening_for<kind>(processor());
+    const auto of_groups = room_for<ElementFactors<double>>(groups_.size());
+    compute(law, J0, groups_, fibres_.empty() ? nullptr : fibres_.data(), positions,
+            of_groups.data());
+    std::size_t i = 0;
+    for (std::size_t lane = 0; i < factors.size(); ++lane)
+        for (std::size_t g = 0; g < of_groups.size() && i < factors.size(); ++g)
+            factors[i++] = of_groups[g].factor[lane];
 }
 
 template class SimdCentreElements<CellKind::hexahedron>;

@@ -55,11 +55,19 @@ class SimdCentreElements {
     /// @param kernel     the kernel of assign()
     /// @param positions  m, by local number
     /// @param forces     N, by local number
-    /// @param next       memory to prefetch; see ElementBlock::compute_forces
     template <class Kernel>
     void add_forces(const Kernel& kernel, const LocalVector* positions, LocalVector* forces,
-                    std::span<const std::byte> next) const {
-        add_forces_of(kernel.law, kernel.inversion_threshold, positions, forces, next);
+                    std::span<const std::byte> /*next*/) const {
+        add_forces_of(kernel.law, kernel.inversion_threshold, positions, forces);
+    }
+    /// Sets the factors of VirtualCentreKernel::stiffening of all cells, in their order. They equal
+    /// those of the reference within rounding.
+    /// @param kernel     the kernel of assign()
+    /// @param positions  m, by local number
+    template <class Kernel>
+    void set_stiffening(const Kernel& kernel, const LocalVector* positions,
+                        std::span<double> factors) const {
+        set_stiffening_of(kernel.law, kernel.inversion_threshold, positions, factors);
     }
     /// Returns the memory of the cells that add_forces() reads first.
     std::span<const std::byte> bytes() const { return std::as_bytes(std::span(groups_)); }
@@ -77,8 +85,10 @@ class SimdCentreElements {
     };
     void assign_groups(std::size_t num_elements, bool with_fibres);
     void set_cell(std::size_t i, const Cell& cell, double share);
-    void add_forces_of(const Law& law, double J0, const LocalVector* positions, LocalVector* forces,
-                       std::span<const std::byte> next) const;
+    void add_forces_of(const Law& law, double J0, const LocalVector* positions,
+                       LocalVector* forces) const;
+    void set_stiffening_of(const Law& law, double J0, const LocalVector* positions,
+                           std::span<double> factors) const;
 
     std::vector<CentreGroup<kind>> groups_;
     std::vector<CentreFibres<kind>> fibres_;  // empty for a law without fibres
@@ -89,10 +99,19 @@ template <topology::CellKind kind>
 using AddCentreForces = void(const Law& law, double inversion_threshold,
                              std::span<const CentreGroup<kind>> groups,
                              const CentreFibres<kind>* fibres, const LocalVector* positions,
-                             LocalVector* forces, std::span<const std::byte> next);
+                             LocalVector* forces);
 /// Returns the function that SimdCentreElements::add_forces calls on a processor.
 template <topology::CellKind kind>
 AddCentreForces<kind>* centre_forces_for(Processor processor);
+
+template <topology::CellKind kind>
+using CentreStiffening = void(const Law& law, double inversion_threshold,
+                              std::span<const CentreGroup<kind>> groups,
+                              const CentreFibres<kind>* fibres, const LocalVector* positions,
+                              ElementFactors<double>* factors);
+/// Returns the function that SimdCentreElements::set_stiffening calls on a processor.
+template <topology::CellKind kind>
+CentreStiffening<kind>* centre_stiffening_for(Processor processor);
 
 extern template class SimdCentreElements<topology::CellKind::hexahedron>;
 extern template class SimdCentreElements<topology::CellKind::wedge>;

@@ -21,7 +21,7 @@ struct PronyTerm {
 /// comparison with HEML 2015.
 enum class PronyRule : std::uint8_t { stress, nodal };
 
-/// HEML, hyper-elastic mass links, on tetrahedra.
+/// HEML, hyper-elastic mass links. Cells other than tetrahedra are divided into some.
 struct HyperElasticLinks {
     Law law;                           ///< with viscosity, the law of the instantaneous moduli
     double inversion_threshold = 0.4;  ///< J0: below it the force of volume terms is linear in J

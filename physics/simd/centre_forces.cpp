@@ -1,8 +1,7 @@
 // Forces of HEML on hexahedra, wedges and pyramids on lanes: VirtualCentreKernel::forces.
 // Equations: docs/theory.md, Hexahedra, wedges and pyramids. Compiled for each kind of processor:
 // lanes.h. SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/elements/simd_centre_elements.h"
-#include "incise/physics/simd/gather_lanes.h"
+#include "incise/physics/simd/centre_lanes.h"
 #include "incise/physics/simd/link_forces.h"
 
 namespace incise::physics::INCISE_PROCESSOR {
@@ -10,25 +9,6 @@ namespace incise::physics::INCISE_PROCESSOR {
 namespace {
 
 using topology::CellKind;
-using CellNumbers = Lanes<double>;
-using CellVectors = Lanes3<double>;
-
-/// Returns all points of cells, from their corners relative to any origin.
-template <CellKind kind>
-[[gnu::always_inline]] inline void set_centres(
-    std::array<CellVectors, CentreDivision<kind>::num_points>& points) {
-    using Division = CentreDivision<kind>;
-    CellVectors sum = points[0];
-    for (std::size_t k = 1; k < Division::num_corners; ++k) sum = sum + points[k];
-    std::size_t next = Division::num_corners;
-    for (int f = 0; f < Division::traits.num_faces; ++f) {
-        const auto face = Division::traits.face(f);
-        if (face.size() != 4) continue;
-        const auto at = [&](std::size_t p) { return points[static_cast<std::size_t>(face[p])]; };
-        points[next++] = CellNumbers(0.25) * (at(0) + at(1) + at(2) + at(3));
-    }
-    points[next] = CellNumbers(1.0 / static_cast<double>(Division::num_corners)) * sum;
-}
 
 /// Adds what acts on the centres to the corners.
 template <CellKind kind>
@@ -48,16 +28,6 @@ template <CellKind kind>
     }
 }
 
-/// ln g and g'/g of VirtualCentreKernel.
-struct Growth {
-    CellNumbers logarithm, rate;
-    Growth(CellNumbers J, double J0) {
-        const CellNumbers above = max(J, J0);
-        logarithm = log(above) + min(J - J0, 0.0) * (1.0 / J0);
-        rate = 1.0 / above;
-    }
-};
-
 // The edges of a tetrahedron are scaled by s, so that it has the mean volume ratio. With its forces
 // f on scaled edges v, the work of the scale is f . v per ln s: it acts on the two volume ratios.
 template <CellKind kind, class Law>
@@ -65,27 +35,11 @@ void add_forces_of(const Law& law, double J0, const CentreGroup<kind>& group,
                    const CentreFibres<kind>* fibres, std::size_t first,
                    const LocalVector* positions, LocalVector* forces) {
     using Division = CentreDivision<kind>;
-    static constexpr auto parts = Division::parts();
-    std::array<CellVectors, Division::num_points> x, f;
+    constexpr auto& parts = CellLanes<kind>::parts;
+    const CellLanes<kind> cells(group, first, positions);
+    const Growth of_mean(cells.mean, J0);
+    std::array<CellVectors, Division::num_points> f;
     f.fill({0.0, 0.0, 0.0});
-    x[0] = f[0];
-    const auto edges = gather_edges<double>(positions, group.offsets, first);
-    std::copy(edges.begin(), edges.end(), x.begin() + 1);
-    set_centres<kind>(x);
-    const auto edges_of = [&](std::size_t t) -> LinkVectors<double> {
-        const CellVectors& origin = x[parts[t][0]];
-        return {x[parts[t][1]] - origin, x[parts[t][2]] - origin, x[parts[t][3]] - origin};
-    };
-    const CellNumbers per_volume = CellNumbers::load(group.per_volume + first);
-    std::array<CellNumbers, Division::num_parts> ratios;
-    CellNumbers mean = 0.0;
-    for (std::size_t t = 0; t < Division::num_parts; ++t) {
-        const auto v = edges_of(t);
-        const MetricGroup<double>& part = group.parts[t];
-        ratios[t] = dot(cross(v[0], v[1]), v[2]) * CellNumbers::load(part.per_six_volumes + first);
-        mean += CellNumbers::load(part.volume + first) * per_volume * ratios[t];
-    }
-    const Growth of_mean(mean, J0);
     std::array<CellNumbers, Division::num_parts> works;  // of ln s, J
     CellNumbers work = 0.0;
     const auto add = [&](std::size_t t, const LinkVectors<double>& of_corners) {
@@ -95,9 +49,9 @@ void add_forces_of(const Law& law, double J0, const CentreGroup<kind>& group,
         }
     };
     for (std::size_t t = 0; t < Division::num_parts; ++t) {
-        const Growth growth(ratios[t], J0);
+        const Growth growth(cells.ratios[t], J0);
         const CellNumbers s = exp((of_mean.logarithm - growth.logarithm) * (1.0 / 3.0));
-        auto v = edges_of(t);
+        auto v = cells.edges(t);
         for (CellVectors& edge : v) edge = s * edge;
         LinkVectors<double> on_edges =
             link_forces(law, J0, group.parts[t], fibres ? &fibres->parts[t] : nullptr, first, v);
@@ -108,9 +62,10 @@ void add_forces_of(const Law& law, double J0, const CentreGroup<kind>& group,
         for (CellVectors& force : on_edges) force = s * force;
         add(t, on_edges);
     }
-    const CellNumbers on_mean = work * of_mean.rate * per_volume * (1.0 / 18.0);
+    const CellNumbers on_mean =
+        work * of_mean.rate * CellNumbers::load(group.per_volume + first) * (1.0 / 18.0);
     for (std::size_t t = 0; t < Division::num_parts; ++t) {
-        const auto v = edges_of(t);
+        const auto v = cells.edges(t);
         const CellNumbers along =
             on_mean -
             works[t] * CellNumbers::load(group.parts[t].per_six_volumes + first) * (1.0 / 3.0);
@@ -142,22 +97,21 @@ void add_forces(const Law& law, double J0, std::span<const CentreGroup<kind>> gr
 void add_centre_forces(const Law& law, double J0,
                        std::span<const CentreGroup<CellKind::hexahedron>> groups,
                        const CentreFibres<CellKind::hexahedron>* fibres,
-                       const LocalVector* positions, LocalVector* forces,
-                       std::span<const std::byte>) {
+                       const LocalVector* positions, LocalVector* forces) {
     add_forces(law, J0, groups, fibres, positions, forces);
 }
 
 void add_centre_forces(const Law& law, double J0,
                        std::span<const CentreGroup<CellKind::wedge>> groups,
                        const CentreFibres<CellKind::wedge>* fibres, const LocalVector* positions,
-                       LocalVector* forces, std::span<const std::byte>) {
+                       LocalVector* forces) {
     add_forces(law, J0, groups, fibres, positions, forces);
 }
 
 void add_centre_forces(const Law& law, double J0,
                        std::span<const CentreGroup<CellKind::pyramid>> groups,
                        const CentreFibres<CellKind::pyramid>* fibres, const LocalVector* positions,
-                       LocalVector* forces, std::span<const std::byte>) {
+                       LocalVector* forces) {
     add_forces(law, J0, groups, fibres, positions, forces);
 }
 

@@ -285,7 +285,7 @@ TEST(RandomEdits, UndoneLeaveTheMotionAsItWas) {
     }
 }
 
-// Kinds of cells that have no forces can be edited all the same.
+// The mesh alone, of all kinds of cells.
 TEST(RandomEdits, OfOtherCellsAreSoundAndReversible) {
     for (const char* name : {"mixed"}) {
         const auto& families = test::mesh_families();

@@ -213,6 +213,7 @@ TEST(VirtualCentre, HasTheForcesOfTheReferenceOnLanesWithTheSameBitsOnEachProces
         std::iota(corners.begin(), corners.end(), std::uint16_t{0});
         lanes.set_nodes(corners, static_cast<std::uint16_t>(num_corners * n));
         std::vector<LocalVector> positions(num_corners * n + 1), expected(positions.size());
+        std::vector<double> stiffening;
         double scale = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
             const auto X = random_cell<kind()>(random);
@@ -224,19 +225,24 @@ TEST(VirtualCentre, HasTheForcesOfTheReferenceOnLanesWithTheSameBitsOnEachProces
                 random, {random.uniform(0.8, 1.2), random.uniform(0.8, 1.2), last});
             const auto x = i % 4 == 1 ? X : moved<kind()>(X, F, 0.05, random);
             const auto f = kernel.forces(e, x);
+            stiffening.push_back(kernel.stiffening(e, x));
             for (std::size_t k = 0; k < num_corners; ++k) {
                 positions[num_corners * i + k] = x[k];
                 expected[num_corners * i + k] = f[k];
                 scale = std::max(scale, f[k].norm());
             }
         }
+        std::vector<double> factors(n);
+        lanes.set_stiffening(kernel, positions.data(), factors);
+        for (std::size_t i = 0; i < n; ++i)
+            EXPECT_NEAR(factors[i], stiffening[i], 1e-6 * stiffening[i]);
         std::vector<LocalVector> first;
         for (const Processor processor : processors_at_hand()) {
             std::vector<LocalVector> forces(positions.size());
             centre_forces_for<kind()>(processor)(
                 kernel.law, 0.4, lanes.groups(),
                 lanes.fibres().empty() ? nullptr : lanes.fibres().data(), positions.data(),
-                forces.data(), {});
+                forces.data());
             for (std::size_t k = 0; k < num_corners * n; ++k)
                 EXPECT_LE((forces[k].vector() - expected[k].vector()).norm(), 1e-11 * scale);
             if (first.empty()) first = forces;
