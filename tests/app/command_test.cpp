@@ -226,7 +226,7 @@ TEST_F(Command, GoesOnCheckingAfterABoxTooLarge) {
     write("good.toml", scenario);
     const std::string message =
         ".toml:2:7: key 'mesh.box.cells': makes 99897344 elements: that "
-        "takes 249.7 GB of memory, and this machine has ";
+        "takes 469.5 GB of memory, and this machine has ";
     const auto outcome = run("check large.toml good.toml");
     EXPECT_EQ(outcome.status, 5);
     const std::string announced = "large.toml: builds the body of 99897344 elements, to check it\n";
