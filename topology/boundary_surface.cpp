@@ -14,24 +14,6 @@ void sort_and_make_unique(std::vector<T>& values) {
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-/// Returns the elements, dead ones included, whose boundary faces an edit may have changed.
-std::vector<CellId> elements_with_other_faces(const ChangeSet& changes) {
-    std::vector<CellId> touched;
-    for (const auto* records : {&changes.elements_added, &changes.elements_removed})
-        for (const CellRecord& record : *records) {
-            touched.push_back(record.id);
-            if (record.parent.is_valid()) touched.push_back(record.parent);
-        }
-    for (const CellRewiring& rewiring : changes.rewired) touched.push_back(rewiring.element);
-    for (const auto* pairs : {&changes.faces_opened, &changes.faces_closed})
-        for (const FacePair& pair : *pairs) {
-            touched.push_back(pair.a.cell);
-            touched.push_back(pair.b.cell);
-        }
-    sort_and_make_unique(touched);
-    return touched;
-}
-
 }  // namespace
 
 BoundarySurface::BoundarySurface(const Mesh& mesh) : epoch_(mesh) {
@@ -79,7 +61,7 @@ void BoundarySurface::remove_faces(CellId e) {
 void BoundarySurface::apply(const Mesh& mesh, const ChangeSet& changes) {
     if (changes.is_empty()) return;
     epoch_.advance(mesh, changes, "surface");
-    const auto touched = elements_with_other_faces(changes);
+    const auto touched = touched_cells(changes);
     for (const CellId e : touched) remove_faces(e);
     for (const CellId e : touched)
         if (e.index() < mesh.element_capacity() && mesh.is_alive(e)) add_faces(mesh, e);

@@ -10,9 +10,11 @@
 
 namespace incise::topology {
 
-/// The kind of a cell.
-enum class CellKind : std::uint8_t { tetrahedron, hexahedron, wedge, pyramid };
+/// The kind of a cell. A polyhedron is a cell that a cut has divided, or one beside it: its corners
+/// and faces are its own, see CellShape. All others have those of their kind.
+enum class CellKind : std::uint8_t { tetrahedron, hexahedron, wedge, pyramid, polyhedron };
 
+/// The number of kinds with a numbering of their own: all but polyhedron.
 inline constexpr int num_cell_kinds = 4;
 inline constexpr int max_corners = 8;
 inline constexpr int max_faces = 6;
@@ -46,7 +48,7 @@ struct CellTraits {
     }
 };
 
-inline constexpr std::array<CellTraits, num_cell_kinds> cell_traits = {{
+inline constexpr std::array<CellTraits, num_cell_kinds + 1> cell_traits = {{
     {"tetrahedron",
      "tetrahedra",
      4,
@@ -94,6 +96,7 @@ inline constexpr std::array<CellTraits, num_cell_kinds> cell_traits = {{
      {4, 3, 3, 3, 3},
      {{{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}},
      {0, 3, 2, 1, 4}},
+    {"polyhedron", "polyhedra", 0, 0, 0, {}, {}, {}, {}},
 }};
 
 constexpr const CellTraits& traits(CellKind kind) {

@@ -1,21 +1,45 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/topology/change_set.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace incise::topology {
 
 bool ChangeSet::is_empty() const {
-    return MeshChanges::is_empty() && inside_changes.empty() && faces_opened.empty() &&
-           faces_closed.empty();
+    return MeshChanges::is_empty() && shape_changes.empty() && inside_changes.empty() &&
+           faces_opened.empty() && faces_closed.empty();
 }
 
 ChangeSet inverse(const ChangeSet& changes) {
     ChangeSet back = changes;
     invert(back);
     std::swap(back.faces_opened, back.faces_closed);
+    for (ShapeChange& change : back.shape_changes) {
+        std::swap(change.kind_from, change.kind_to);
+        std::swap(change.from, change.to);
+    }
     for (InsideChange& change : back.inside_changes) std::swap(change.from, change.to);
     return back;
+}
+
+std::vector<CellId> touched_cells(const ChangeSet& changes) {
+    std::vector<CellId> touched;
+    for (const auto* records : {&changes.elements_added, &changes.elements_removed})
+        for (const CellRecord& record : *records) {
+            touched.push_back(record.id);
+            if (record.parent.is_valid()) touched.push_back(record.parent);
+        }
+    for (const CellRewiring& rewiring : changes.rewired) touched.push_back(rewiring.element);
+    for (const ShapeChange& change : changes.shape_changes) touched.push_back(change.cell);
+    for (const auto* pairs : {&changes.faces_opened, &changes.faces_closed})
+        for (const FacePair& pair : *pairs) {
+            touched.push_back(pair.a.cell);
+            touched.push_back(pair.b.cell);
+        }
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    return touched;
 }
 
 }  // namespace incise::topology

@@ -10,6 +10,7 @@
 
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
+#include "incise/topology/cell_shape.h"
 
 namespace incise::topology {
 
@@ -31,7 +32,7 @@ struct NodeRecordOf {
     };
     Node id;
     Vec3 rest_position = Vec3::Zero();
-    std::array<Source, 4> sources{};
+    std::array<Source, max_corners> sources{};
     int num_sources = 0;
     bool operator==(const NodeRecordOf&) const = default;
     static void archive(auto& ar, auto& self) {
@@ -100,8 +101,8 @@ using VertexRecord = NodeRecordOf<VertexId>;
 using CellRecord = ElementRecordOf<VertexId, CellId>;
 using CellRewiring = RewiringOf<VertexId, CellId>;
 
-/// A change of Mesh::was_inside() at the faces of a cell: bit f for face f. From 0 for a cell
-/// that the edit added.
+/// A change of Mesh::was_inside() at the faces of a cell that is no polyhedron: bit f for face f.
+/// From 0 for a cell that the edit added.
 struct InsideChange {
     CellId cell;
     std::uint8_t from = 0, to = 0;
@@ -116,9 +117,25 @@ struct FacePair {
     static void archive(auto& ar, auto& self) { ar(self.a, self.b); }
 };
 
+/// A change of the faces of a cell that is a polyhedron before or after the edit. The shape of
+/// another kind is empty here: it is in the corners of the cell. From an empty polyhedron for a
+/// cell that the edit added.
+struct ShapeChange {
+    CellId cell;
+    CellKind kind_from = CellKind::polyhedron, kind_to = CellKind::polyhedron;
+    CellShape from, to;
+    bool operator==(const ShapeChange&) const = default;
+    static void archive(auto& ar, auto& self) {
+        ar(self.cell, self.kind_from, self.kind_to, self.from, self.to);
+    }
+};
+
 /// The record of one edit of the material. The opened faces include the shared faces of removed
-/// cells.
+/// cells. Faces are named by the numbers that they have where they are joined: those opened by the
+/// numbers before the edit, those closed by the numbers after it. A face of a polyhedron that gets
+/// another number is in both lists.
 struct ChangeSet : MeshChanges<VertexId, CellId> {
+    std::vector<ShapeChange> shape_changes;  ///< in ascending order of cells
     std::vector<InsideChange> inside_changes;
     std::vector<FacePair> faces_opened, faces_closed;
 
@@ -127,7 +144,7 @@ struct ChangeSet : MeshChanges<VertexId, CellId> {
     bool operator==(const ChangeSet&) const = default;
     static void archive(auto& ar, auto& self) {
         MeshChanges::archive(ar, self);
-        ar(self.inside_changes, self.faces_opened, self.faces_closed);
+        ar(self.shape_changes, self.inside_changes, self.faces_opened, self.faces_closed);
     }
 };
 
@@ -144,5 +161,9 @@ void invert(MeshChanges<Node, Element>& changes) {
 
 /// Returns the edit that undoes `changes`.
 ChangeSet inverse(const ChangeSet& changes);
+
+/// Returns the cells, dead ones included, that an edit added, removed, joined or parted, or of
+/// which it changed a corner or a face; in ascending order.
+std::vector<CellId> touched_cells(const ChangeSet& changes);
 
 }  // namespace incise::topology

@@ -15,28 +15,40 @@ inline double tetrahedron_volume(const Vec3& a, const Vec3& b, const Vec3& c, co
     return (b - a).cross(c - a).dot(d - a) / 6.0;
 }
 
+/// Returns the volume between the origin and a face. A quadrilateral is the bilinear patch: the
+/// flux of x through it is the mean of the fluxes through its two triangulations. A face of more
+/// corners is the fan of its triangles from the first corner.
+/// @param size  the number of corners
+/// @param at    (position): the corner, anticlockwise as seen from outside
+template <class CornerAt>
+double flux_of_face(int size, CornerAt at) {
+    const auto flux = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+        return a.dot(b.cross(c)) / 6.0;
+    };
+    const Vec3 a = at(0), b = at(1), c = at(2);
+    if (size == 3) return flux(a, b, c);
+    if (size == 4) {
+        const Vec3 d = at(3);
+        return 0.5 * (flux(a, b, c) + flux(a, c, d) + flux(a, b, d) + flux(b, c, d));
+    }
+    double sum = 0.0;
+    for (int p = 2; p < size; ++p) sum += flux(a, at(p - 1), at(p));
+    return sum;
+}
+
 /// Returns the signed volume of a cell with straight edges. Quadrilateral faces are the bilinear
 /// patches of the trilinear map, so that cells which share such a face have no gap between them.
-/// The flux of x through a patch is the mean of the fluxes through its two triangulations.
 inline double signed_volume(CellKind kind, std::span<const Vec3> corners) {
     const Vec3& o = corners[0];
     if (kind == CellKind::tetrahedron)
         return tetrahedron_volume(o, corners[1], corners[2], corners[3]);
     const CellTraits& t = traits(kind);
-    const auto flux = [&](int i, int j, int k) {
-        const auto at = [&](int corner) -> Vec3 {
-            return corners[static_cast<std::size_t>(corner)] - o;
-        };
-        return at(i).dot(at(j).cross(at(k))) / 6.0;
-    };
     double volume = 0.0;
     for (int f = 0; f < t.num_faces; ++f) {
-        const auto v = t.face(f);
-        if (v.size() == 3)
-            volume += flux(v[0], v[1], v[2]);
-        else
-            volume += 0.5 * (flux(v[0], v[1], v[2]) + flux(v[0], v[2], v[3]) +
-                             flux(v[0], v[1], v[3]) + flux(v[1], v[2], v[3]));
+        const auto face = t.face(f);
+        volume += flux_of_face(static_cast<int>(face.size()), [&](int p) -> Vec3 {
+            return corners[static_cast<std::size_t>(face[static_cast<std::size_t>(p)])] - o;
+        });
     }
     return volume;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "incise/base/error.h"
+#include "incise/topology/darts.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh_import.h"
 
@@ -16,8 +17,8 @@ namespace incise::topology {
 
 namespace {
 
-using Dart = LinearCellComplex::Dart_handle;
-using ConstDart = LinearCellComplex::Dart_const_handle;
+using Handle = LinearCellComplex::Dart_handle;
+using ConstHandle = LinearCellComplex::Dart_const_handle;
 using Vertex = LinearCellComplex::Attribute_handle<0>::type;
 using ConstVertex = LinearCellComplex::Attribute_const_handle<0>::type;
 
@@ -83,8 +84,6 @@ class ComplexMaker {
 
   private:
     void add(CellId e) {
-        const CellTraits& t = traits(mesh_.kind(e));
-        ByPlace<Dart>& darts = cells_[e.index()];
         const auto volume = complex_.create_attribute<3>();
         ComplexCell& info = complex_.info_of_attribute<3>(volume);
         info.id = e;
@@ -94,46 +93,48 @@ class ComplexMaker {
             if (const std::int64_t row = carriers_.of_cell[num_cells_]; row != Carriers::whole)
                 info.carrier = carriers_.corners[static_cast<std::size_t>(row)];
         ++num_cells_;
-        for_each_place(t, [&](int f, int p) {
-            Dart& d = at(darts, f, p);
-            d = complex_.create_dart();
-            complex_.set_dart_attribute<0>(d, vertices_[mesh_.face_corner({e, f}, p).index()]);
-            complex_.set_dart_attribute<3>(d, volume);
-        });
-        for_each_place(t, [&](int f, int p) {
-            const int size = mesh_.face_size({e, f});
-            complex_.basic_link_beta_1(at(darts, f, p), at(darts, f, (p + 1) % size));
-            const DartPlace other =
-                at(opposite_places[static_cast<std::size_t>(mesh_.kind(e))], f, p);
-            if (f < other.face)
-                complex_.basic_link_beta_for_involution<2>(at(darts, f, p),
-                                                           at(darts, other.face, other.position));
-        });
+        auto& faces = cells_[e.index()];
+        faces.resize(static_cast<std::size_t>(mesh_.num_faces(e)));
+        for (int f = 0; f < mesh_.num_faces(e); ++f)
+            for (int p = 0; p < mesh_.face_size({e, f}); ++p) {
+                const Handle d = complex_.create_dart();
+                complex_.set_dart_attribute<0>(d, vertices_[mesh_.face_corner({e, f}, p).index()]);
+                complex_.set_dart_attribute<3>(d, volume);
+                faces[static_cast<std::size_t>(f)].push_back(d);
+            }
+        for (int f = 0; f < mesh_.num_faces(e); ++f)
+            for (int p = 0; p < mesh_.face_size({e, f}); ++p) {
+                const Dart here{{e, f}, p}, there = opposite(mesh_, here);
+                complex_.basic_link_beta_1(dart(here), dart(next(mesh_, here)));
+                if (f < there.face.face)
+                    complex_.basic_link_beta_for_involution<2>(dart(here), dart(there));
+            }
+    }
+
+    Handle& dart(const Dart& d) {
+        return cells_[d.face.cell.index()][static_cast<std::size_t>(d.face.face)]
+                     [static_cast<std::size_t>(d.position)];
     }
 
     /// Joins a face to its neighbour, or says that it is on a cut.
     void finish(FaceId f) {
         const FaceId other = mesh_.neighbor(f);
-        const int size = mesh_.face_size(f);
         if (!other.is_valid()) {
             if (mesh_.is_on_cut(f))
-                complex_.set_attribute<2>(at(cells_[f.cell.index()], f.face, 0),
+                complex_.set_attribute<2>(dart({f, 0}),
                                           complex_.create_attribute<2>(ComplexFace{}));
             return;
         }
         if (other < f) return;
-        const int shift = matching_shift(mesh_, f, other);
-        for (int p = 0; p < size; ++p)
-            complex_.basic_link_beta_for_involution<3>(
-                at(cells_[f.cell.index()], f.face, p),
-                at(cells_[other.cell.index()], other.face, (shift - p - 1 + 2 * size) % size));
+        for (int p = 0; p < mesh_.face_size(f); ++p)
+            complex_.basic_link_beta_for_involution<3>(dart({f, p}), dart(across(mesh_, {f, p})));
     }
 
     const Mesh& mesh_;
     const Carriers& carriers_;
     LinearCellComplex& complex_;
-    std::vector<Vertex> vertices_;      // by node id
-    std::vector<ByPlace<Dart>> cells_;  // by element id
+    std::vector<Vertex> vertices_;                         // by node id
+    std::vector<std::vector<std::vector<Handle>>> cells_;  // by element id, by face, by position
     std::size_t num_cells_ = 0;
 };
 
@@ -154,7 +155,7 @@ class ComplexReader {
     struct Cell {
         CellKind kind{};
         ComplexCell info;
-        std::vector<ConstDart> darts;
+        std::vector<ConstHandle> darts;
         std::vector<std::int64_t> corners;
     };
 
@@ -192,10 +193,10 @@ class ComplexReader {
             return rank(a.info.id) < rank(b.info.id);
         });
         for (std::size_t c = 0; c < cells_.size(); ++c)
-            for (const ConstDart d : cells_[c].darts) cell_of_[d] = c;
+            for (const ConstHandle d : cells_[c].darts) cell_of_[d] = c;
     }
 
-    std::int64_t number_of(ConstDart d) const {
+    std::int64_t number_of(ConstHandle d) const {
         const ConstVertex v = complex_.attribute<0>(d);
         if (v == nullptr) throw InputError("linear cell complex: a dart has no vertex attribute");
         return numbers_.at(v);
@@ -203,14 +204,14 @@ class ComplexReader {
 
     /// Gives the corners of a cell their places, with `first` as the first dart of the first face.
     /// Returns false if the cell is of another kind.
-    bool place_corners(Cell& cell, ConstDart first) const {
+    bool place_corners(Cell& cell, ConstHandle first) const {
         const CellTraits& t = traits(cell.kind);
-        ByPlace<ConstDart> darts{};
+        ByPlace<ConstHandle> darts{};
         at(darts, 0, 0) = first;
-        std::vector<std::pair<DartPlace, ConstDart>> open{{{0, 0}, first}};
+        std::vector<std::pair<DartPlace, ConstHandle>> open{{{0, 0}, first}};
         bool fits = true;
-        const auto reach = [&](int f, int p, ConstDart d) {
-            ConstDart& known = at(darts, f, p);
+        const auto reach = [&](int f, int p, ConstHandle d) {
+            ConstHandle& known = at(darts, f, p);
             if (known == nullptr) open.push_back({{f, p}, d});
             if (known == nullptr) known = d;
             fits = fits && known == d;
@@ -238,8 +239,8 @@ class ComplexReader {
     }
 
     void read_corners(Cell& cell) const {
-        const auto is_first = [&](ConstDart d) {
-            const auto id = [&](ConstDart dart) {
+        const auto is_first = [&](ConstHandle d) {
+            const auto id = [&](ConstHandle dart) {
                 const ConstVertex v = complex_.attribute<0>(dart);
                 return v == nullptr ? VertexId() : complex_.info_of_attribute<0>(v).id;
             };
@@ -250,7 +251,7 @@ class ComplexReader {
         for (int k = 0; k < num_cell_kinds; ++k) {
             cell.kind = static_cast<CellKind>(k);
             if (std::ssize(cell.darts) != traits(cell.kind).num_face_corners()) continue;
-            for (const ConstDart d : cell.darts)
+            for (const ConstHandle d : cell.darts)
                 if (place_corners(cell, d)) {
                     orient(cell);
                     return;
@@ -288,9 +289,9 @@ class ComplexReader {
     }
 
     /// Returns the number of the face of a dart in its cell.
-    int face_of(const Cell& cell, ConstDart d) const {
+    int face_of(const Cell& cell, ConstHandle d) const {
         std::vector<std::int64_t> points;
-        ConstDart walking = d;
+        ConstHandle walking = d;
         do {
             points.push_back(number_of(walking));
             walking = complex_.beta<1>(walking);
@@ -311,7 +312,7 @@ class ComplexReader {
         const Cell& cell = cells_[c];
         std::array<bool, max_faces> is_read{};
         std::int32_t on_cuts = 0;
-        for (const ConstDart d : cell.darts) {
+        for (const ConstHandle d : cell.darts) {
             const int f = face_of(cell, d);
             if (std::exchange(is_read[static_cast<std::size_t>(f)], true)) continue;
             if (complex_.is_free<3>(d)) {
@@ -319,7 +320,7 @@ class ComplexReader {
                     on_cuts |= 1 << f;
                 continue;
             }
-            const ConstDart far = complex_.beta<3>(d);
+            const ConstHandle far = complex_.beta<3>(d);
             const std::size_t other = cell_of_.at(far);
             const SourceFace here{c, f}, there{other, face_of(cells_[other], far)};
             if (here < there) shared_.push_back({here, there, shift_of(here, there)});
@@ -346,7 +347,7 @@ class ComplexReader {
 
     const LinearCellComplex& complex_;
     std::unordered_map<ConstVertex, std::int64_t> numbers_;
-    std::unordered_map<ConstDart, std::size_t> cell_of_;
+    std::unordered_map<ConstHandle, std::size_t> cell_of_;
     std::vector<Cell> cells_;
     MeshData data_;
     std::map<std::array<double, 12>, std::int64_t> rows_;  // of carriers, by their corners

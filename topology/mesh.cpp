@@ -33,6 +33,12 @@ template <class Visit>
 void for_faces_at(const Mesh& mesh, CellId e, VertexId n, Visit visit) {
     const int corner = mesh.corner_of(e, n);
     if (corner < 0) return;
+    if (mesh.is_polyhedron(e)) {
+        for (int f = 0; f < mesh.num_faces(e); ++f)
+            for (int p = 0; p < mesh.face_size({e, f}); ++p)
+                if (mesh.face_corner({e, f}, p) == n) visit(FaceId{e, f});
+        return;
+    }
     unsigned faces =
         faces_of_corner[static_cast<std::size_t>(mesh.kind(e))][static_cast<std::size_t>(corner)];
     for (; faces != 0; faces &= faces - 1) visit(FaceId{e, std::countr_zero(faces)});
@@ -65,19 +71,6 @@ void collect_star(const Mesh& mesh, VertexId n, CellId start, std::vector<CellId
     std::sort(elements.begin() + static_cast<std::ptrdiff_t>(begin), elements.end());
 }
 
-void collect_edge_ring(const Mesh& mesh, CellId e, VertexId a, VertexId b,
-                       std::vector<CellId>& elements) {
-    const std::size_t begin = elements.size();
-    elements.push_back(e);
-    for (std::size_t next = begin; next < elements.size(); ++next)
-        for_faces_at(mesh, elements[next], a, [&](FaceId f) {
-            const CellId other = mesh.neighbor(f).cell;
-            if (!other.is_valid() || is_known(elements, begin, other)) return;
-            for (int p = 0; p < mesh.face_size(f); ++p)
-                if (mesh.face_corner(f, p) == b) elements.push_back(other);
-        });
-}
-
 void Mesh::star(VertexId n, std::vector<CellId>& elements) const {
     elements.clear();
     if (is_alive(n)) collect_star(*this, n, incident_element(n), elements);
@@ -87,6 +80,45 @@ int Mesh::corner_of(CellId e, VertexId n) const {
     const auto nodes = corners(e);
     const auto it = std::find(nodes.begin(), nodes.end(), n);
     return it == nodes.end() ? -1 : static_cast<int>(it - nodes.begin());
+}
+
+CellShape Mesh::shape(CellId e) const {
+    if (is_polyhedron(e)) return polyhedron(e).shape;
+    CellShape shape;
+    std::array<VertexId, max_face_corners> face;
+    for (int f = 0; f < num_faces(e); ++f) {
+        const int size = face_size({e, f});
+        for (int p = 0; p < size; ++p) face[static_cast<std::size_t>(p)] = face_corner({e, f}, p);
+        shape.add_face(std::span(face).first(static_cast<std::size_t>(size)), was_inside({e, f}));
+    }
+    return shape;
+}
+
+void Mesh::set_shape(CellId e, CellKind kind, CellShape shape) {
+    const auto row_of = [&](CellKind of) {  // the neighbours in it
+        return std::span(neighbors_)
+            .subspan(face_begin_[e.index()], static_cast<std::size_t>(traits(of).num_faces));
+    };
+    if (kind == CellKind::polyhedron) {
+        Polyhedron& to = polyhedra_[e];
+        if (!is_polyhedron(e)) {
+            const auto from = row_of(kinds_[e.index()]);
+            to.neighbors.assign(from.begin(), from.end());
+            std::ranges::fill(from, FaceId{});
+            to.row_kind = kinds_[e.index()];
+        }
+        to.neighbors.resize(static_cast<std::size_t>(shape.num_faces()));
+        to.corners.clear();
+        shape.append_corners(to.corners);
+        to.shape = std::move(shape);
+    } else if (is_polyhedron(e)) {
+        const auto& from = polyhedra_.at(e).neighbors;
+        const auto to = row_of(kind);
+        for (std::size_t f = 0; f < to.size(); ++f)
+            to[f] = f < from.size() ? from[f] : FaceId{};
+        polyhedra_.erase(e);
+    }
+    kinds_[e.index()] = kind;
 }
 
 std::int64_t Mesh::label(VertexId n) const {
@@ -126,6 +158,7 @@ void Mesh::append_element_row(CellKind kind, int region, std::span<const VertexI
 }
 
 void Mesh::truncate(std::size_t node_capacity, std::size_t element_capacity) {
+    for (std::size_t e = element_capacity; e < kinds_.size(); ++e) polyhedra_.erase(CellId(e));
     rest_positions_.resize(node_capacity);
     incident_elements_.resize(node_capacity);
     kinds_.resize(element_capacity);
@@ -143,7 +176,10 @@ void Mesh::glue(FaceId a, FaceId b) {
     set_neighbor(a, b);
     set_neighbor(b, a);
     for (const FaceId f : {a, b})
-        inside_faces_[f.cell.index()] |= static_cast<std::uint8_t>(1 << f.face);
+        if (is_polyhedron(f.cell))
+            polyhedra_.at(f.cell).shape.set_inside(f.face, true);
+        else
+            inside_faces_[f.cell.index()] |= static_cast<std::uint8_t>(1 << f.face);
 }
 
 void Mesh::unglue(FaceId a) {
@@ -170,11 +206,25 @@ double rest_area(const Mesh& mesh, FaceId f) {
         return mesh.rest_position(mesh.face_corner(f, p));
     };
     if (mesh.face_size(f) == 3) return 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
-    return 0.5 * (at(2) - at(0)).cross(at(3) - at(1)).norm();
+    if (mesh.face_size(f) == 4) return 0.5 * (at(2) - at(0)).cross(at(3) - at(1)).norm();
+    Vec3 sum = Vec3::Zero();
+    for (int p = 2; p < mesh.face_size(f); ++p) sum += (at(p - 1) - at(0)).cross(at(p) - at(0));
+    return 0.5 * sum.norm();
 }
 
 // The loop runs in ascending order of ids, in which neighbours are near each other in memory.
 double rest_volume(const Mesh& mesh, CellId e) {
+    if (mesh.is_polyhedron(e)) {
+        const Vec3& o = mesh.rest_position(mesh.corners(e)[0]);
+        double volume = 0.0;
+        for (int f = 0; f < mesh.num_faces(e); ++f) {
+            const auto at = [&](int p) -> Vec3 {
+                return mesh.rest_position(mesh.face_corner({e, f}, p)) - o;
+            };
+            volume += flux_of_face(mesh.face_size({e, f}), at);
+        }
+        return volume;
+    }
     std::array<Vec3, max_corners> x;
     const auto corners = mesh.corners(e);
     for (std::size_t k = 0; k < corners.size(); ++k) x[k] = mesh.rest_position(corners[k]);
@@ -234,6 +284,7 @@ MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions,
         elements->reserve(mesh.num_elements());
     }
     for (const CellId e : mesh.elements()) {
+        assert(!mesh.is_polyhedron(e));
         for (const VertexId n : mesh.corners(e)) data.corners.push_back(row_of_node[n.index()]);
         data.kinds.push_back(mesh.kind(e));
         data.offsets.push_back(data.corners.size());

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
+#include "incise/topology/cell_shape.h"
 #include "incise/topology/living_ids.h"
 #include "incise/topology/mesh_data.h"
 
@@ -66,7 +68,7 @@ class Mesh {
     int region(CellId e) const { return regions_[e.index()]; }
 
     /// All elements at once, by element id, for renderers and other programs that copy them. Dead
-    /// elements keep their last values.
+    /// elements keep their last values. Corners and faces of polyhedra are not here.
     struct Connectivity {
         std::uint64_t epoch;  ///< of the mesh: another one means that the spans are gone
         std::span<const CellKind> kinds;
@@ -85,31 +87,45 @@ class Mesh {
         return {epoch_, kinds_, regions_, alive_, corner_begin_, corners_, face_begin_, neighbors_};
     }
 
-    /// Returns the corners in the order of cell_kind.h. A dead element keeps its last corners.
+    /// Returns the corners in the order of cell_kind.h, those of a polyhedron in the order in which
+    /// its faces name them. A dead element keeps its last corners.
     std::span<const VertexId> corners(CellId e) const {
-        return {corners_.data() + corner_begin_[e.index()],
-                corner_begin_[e.index() + 1] - corner_begin_[e.index()]};
+        return is_polyhedron(e) ? std::span<const VertexId>(polyhedron(e).corners) : row(e);
     }
+    /// True if the cell has a shape of its own, which edits have made.
+    bool is_polyhedron(CellId e) const { return kinds_[e.index()] == CellKind::polyhedron; }
     /// Returns which corner of `e` the node is; -1 if it is none.
     int corner_of(CellId e, VertexId n) const;
-    int num_faces(CellId e) const { return traits(kind(e)).num_faces; }
+    int num_faces(CellId e) const {
+        return is_polyhedron(e) ? polyhedron(e).shape.num_faces() : traits(kind(e)).num_faces;
+    }
     /// Returns the node at a position in the face, in the order of cell_kind.h.
     VertexId face_corner(FaceId f, int position) const {
-        return corners(f.cell)[static_cast<std::size_t>(
+        if (is_polyhedron(f.cell))
+            return polyhedron(f.cell).shape.face(f.face)[static_cast<std::size_t>(position)];
+        return row(f.cell)[static_cast<std::size_t>(
             traits(kind(f.cell)).face(f.face)[static_cast<std::size_t>(position)])];
     }
     int face_size(FaceId f) const {
-        return static_cast<int>(traits(kind(f.cell)).face(f.face).size());
+        return static_cast<int>(is_polyhedron(f.cell) ? polyhedron(f.cell).shape.face(f.face).size()
+                                                      : traits(kind(f.cell)).face(f.face).size());
     }
     /// Returns the other side of a face; invalid on the boundary.
     FaceId neighbor(FaceId f) const {
-        return neighbors_[face_begin_[f.cell.index()] + static_cast<std::size_t>(f.face)];
+        return is_polyhedron(f.cell)
+                   ? polyhedron(f.cell).neighbors[static_cast<std::size_t>(f.face)]
+                   : neighbors_[face_begin_[f.cell.index()] + static_cast<std::size_t>(f.face)];
     }
+    /// Returns the faces of a cell of any kind.
+    CellShape shape(CellId e) const;
 
     /// True if the face lay inside the body before any cut: it is, or was, joined to another face.
     /// The parts of a face that is divided take its value. The source can name further faces:
     /// MeshData::cut_faces.
-    bool was_inside(FaceId f) const { return (inside_faces_[f.cell.index()] >> f.face & 1) != 0; }
+    bool was_inside(FaceId f) const {
+        return is_polyhedron(f.cell) ? polyhedron(f.cell).shape.is_inside(f.face)
+                                     : (inside_faces_[f.cell.index()] >> f.face & 1) != 0;
+    }
     /// True if the face is on a cut: it is on the boundary, and lay inside the body before any cut.
     bool is_on_cut(FaceId f) const { return !neighbor(f).is_valid() && was_inside(f); }
 
@@ -146,8 +162,28 @@ class Mesh {
     void glue(FaceId a, FaceId b);
     void unglue(FaceId a);
     void set_neighbor(FaceId f, FaceId other) {
-        neighbors_[face_begin_[f.cell.index()] + static_cast<std::size_t>(f.face)] = other;
+        (is_polyhedron(f.cell)
+             ? polyhedra_.at(f.cell).neighbors[static_cast<std::size_t>(f.face)]
+             : neighbors_[face_begin_[f.cell.index()] + static_cast<std::size_t>(f.face)]) = other;
     }
+
+    /// A cell with a shape of its own. The row that it had before stays as it was.
+    struct Polyhedron {
+        CellShape shape;
+        std::vector<VertexId> corners;             // of the faces, each once
+        std::vector<FaceId> neighbors;             // by face
+        CellKind row_kind = CellKind::polyhedron;  // that of the cell before it became one
+        static void archive(auto& ar, auto& self) { ar(self.shape, self.neighbors, self.row_kind); }
+    };
+    const Polyhedron& polyhedron(CellId e) const { return polyhedra_.find(e)->second; }
+    std::span<const VertexId> row(CellId e) const {
+        return {corners_.data() + corner_begin_[e.index()],
+                corner_begin_[e.index() + 1] - corner_begin_[e.index()]};
+    }
+    /// Gives a cell another kind, or another shape. Faces that it has before and after keep their
+    /// neighbours; faces that it loses have none.
+    /// @param shape  of a polyhedron; that of another kind is in its row
+    void set_shape(CellId e, CellKind kind, CellShape shape);
 
     std::uint64_t epoch_ = 0;
     std::size_t num_nodes_ = 0, num_elements_ = 0;
@@ -162,6 +198,7 @@ class Mesh {
     std::vector<VertexId> corners_;
     std::vector<FaceId> neighbors_;
     std::vector<std::uint8_t> inside_faces_;  // by element, bit f for face f: see was_inside()
+    std::unordered_map<CellId, Polyhedron> polyhedra_;
 
     std::vector<std::int64_t> node_labels_, element_labels_;
     std::vector<VertexId> label_nodes_;  ///< by label; the first node if pinched
@@ -179,18 +216,12 @@ struct BuiltMesh {
 /// order. Cost: O(k^2) comparisons for k elements, which are few.
 void collect_star(const Mesh& mesh, VertexId n, CellId start, std::vector<CellId>& elements);
 
-/// Appends the elements at the edge from `a` to `b` that are connected with tetrahedron `e` through
-/// faces at the edge. The first one is `e`; the others follow in the order in which a search from
-/// `e` in both directions finds them.
-void collect_edge_ring(const Mesh& mesh, CellId e, VertexId a, VertexId b,
-                       std::vector<CellId>& elements);
-
 /// Returns the position in face `b` of the node at position 0 of face `a`, if the two faces have
 /// the same nodes in opposite directions; else -1.
 int matching_shift(const Mesh& mesh, FaceId a, FaceId b);
 
-/// Returns the area of a face at rest, m2. For a quadrilateral it is the area of the projection
-/// onto the mean plane of the bilinear patch.
+/// Returns the area of a face at rest, m2. For a face that is not plane it is the area of the
+/// projection onto its mean plane.
 double rest_area(const Mesh& mesh, FaceId f);
 
 /// Returns the volume of an element at rest, m3.

@@ -15,7 +15,7 @@ class MeshArchive {
     static void list(auto& ar, auto& m) {
         ar(m.epoch_, m.num_nodes_, m.num_elements_, m.rest_positions_, m.incident_elements_,
            m.kinds_, m.alive_, m.regions_, m.corners_, m.neighbors_, m.inside_faces_,
-           m.node_labels_, m.element_labels_, m.label_nodes_, m.pinched_);
+           m.node_labels_, m.element_labels_, m.label_nodes_, m.pinched_, m.polyhedra_);
     }
 
     static Mesh load(ArchiveReader& ar) {
@@ -36,14 +36,23 @@ class MeshArchive {
     }
 
     void restore_rows() {
-        for (const CellKind kind : mesh_.kinds_) {
-            require(static_cast<std::size_t>(kind) < num_cell_kinds, "an unknown kind of element");
+        std::size_t num_polyhedra = 0;
+        for (std::size_t i = 0; i < mesh_.kinds_.size(); ++i) {
+            CellKind kind = mesh_.kinds_[i];
+            require(static_cast<std::size_t>(kind) <= num_cell_kinds, "an unknown kind of element");
+            if (kind == CellKind::polyhedron) {
+                const auto cell = mesh_.polyhedra_.find(CellId(i));
+                require(cell != mesh_.polyhedra_.end(), "a polyhedron has no faces");
+                kind = restore(cell->second);
+                ++num_polyhedra;
+            }
             const CellTraits& t = traits(kind);
             mesh_.corner_begin_.push_back(mesh_.corner_begin_.back() +
                                           static_cast<std::size_t>(t.num_corners));
             mesh_.face_begin_.push_back(mesh_.face_begin_.back() +
                                         static_cast<std::size_t>(t.num_faces));
         }
+        require(num_polyhedra == mesh_.polyhedra_.size(), "a cell of another kind has faces");
         const std::size_t num_elements = mesh_.kinds_.size();
         require(mesh_.alive_.size() == num_elements && mesh_.regions_.size() == num_elements &&
                     mesh_.corners_.size() == mesh_.corner_begin_.back() &&
@@ -53,6 +62,15 @@ class MeshArchive {
                     mesh_.element_labels_.size() <= num_elements &&
                     mesh_.node_labels_.size() <= mesh_.incident_elements_.size(),
                 "its lists are of different lengths");
+    }
+
+    /// Completes a polyhedron, and returns the kind of its row.
+    static CellKind restore(Mesh::Polyhedron& cell) {
+        require(cell.shape.is_sound() && std::ssize(cell.neighbors) == cell.shape.num_faces() &&
+                    static_cast<std::size_t>(cell.row_kind) <= num_cell_kinds,
+                "the faces of a polyhedron do not fit together");
+        cell.shape.append_corners(cell.corners);
+        return cell.row_kind;
     }
 
     void require_ids() const {
@@ -66,6 +84,10 @@ class MeshArchive {
             return !f.is_valid() ||
                    (is_element_or_none(f.cell) && f.face >= 0 && f.face < mesh_.num_faces(f.cell));
         };
+        const auto names_ids = [&](const auto& entry) {
+            return std::ranges::all_of(entry.second.corners, is_node) &&
+                   std::ranges::all_of(entry.second.neighbors, is_face_or_none);
+        };
         const auto is_labelled = [&](VertexId n) {
             return !n.is_valid() || n.index() < mesh_.node_labels_.size();
         };
@@ -74,6 +96,7 @@ class MeshArchive {
                     std::ranges::all_of(mesh_.corners_, is_node) &&
                     std::ranges::all_of(mesh_.incident_elements_, is_element_or_none) &&
                     std::ranges::all_of(mesh_.neighbors_, is_face_or_none) &&
+                    std::ranges::all_of(mesh_.polyhedra_, names_ids) &&
                     std::ranges::all_of(mesh_.label_nodes_, is_labelled) &&
                     std::ranges::all_of(mesh_.pinched_,
                                         [&](const auto& row) { return is_node(row.second); }),

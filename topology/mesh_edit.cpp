@@ -51,12 +51,17 @@ void MeshEdit::require_older(CellId e, const char* what) const {
 
 void MeshEdit::save(CellId e) {
     if (e.index() >= element_capacity_before_ || !is_saved_.insert(e).second) return;
-    const auto corners = mesh_.corners(e);
-    SavedRow row{e, mesh_.is_alive(e), {}, {}, mesh_.inside_faces_[e.index()]};
-    std::copy(corners.begin(), corners.end(), row.corners.begin());
-    for (int f = 0; f < mesh_.num_faces(e); ++f)
-        row.neighbors[static_cast<std::size_t>(f)] = mesh_.neighbor({e, f});
-    saved_.push_back(row);
+    SavedRow row{e, mesh_.is_alive(e), mesh_.kind(e), {}, {}, mesh_.inside_faces_[e.index()], {},
+                 {}};
+    std::ranges::copy(mesh_.row(e), row.corners.begin());
+    if (mesh_.is_polyhedron(e)) {
+        row.neighbors_of_polyhedron = mesh_.polyhedron(e).neighbors;
+        row.shape = mesh_.polyhedron(e).shape;
+    } else {
+        for (int f = 0; f < mesh_.num_faces(e); ++f)
+            row.neighbors[static_cast<std::size_t>(f)] = mesh_.neighbor({e, f});
+    }
+    saved_.push_back(std::move(row));
 }
 
 void MeshEdit::touch_face(FaceId f) {
@@ -142,9 +147,16 @@ void MeshEdit::close(FaceId a, FaceId b) {
     touch_face(b);
 }
 
-void MeshEdit::rewire(CellId e, int corner, VertexId to) {
+void MeshEdit::rewire(CellId e, VertexId from, VertexId to) {
     save(e);
-    mesh_.corners_[mesh_.corner_begin_[e.index()] + static_cast<std::size_t>(corner)] = to;
+    if (mesh_.is_polyhedron(e)) {
+        Mesh::Polyhedron& cell = mesh_.polyhedra_.at(e);
+        cell.shape.replace_corner(from, to);
+        std::ranges::replace(cell.corners, from, to);
+        return;
+    }
+    const auto corner = static_cast<std::size_t>(mesh_.corner_of(e, from));
+    mesh_.corners_[mesh_.corner_begin_[e.index()] + corner] = to;
 }
 
 // Collects the elements at the edge in cyclic order. If the ring is not closed, it consists of
@@ -200,16 +212,22 @@ bool MeshEdit::collect_ring(CellId e, VertexId a, VertexId b) {
     return true;
 }
 
-VertexId MeshEdit::add_node_between(VertexId a, VertexId b, double t) {
-    const VertexId n(mesh_.node_capacity());
-    VertexRecord record{n, (1.0 - t) * mesh_.rest_position(a) + t * mesh_.rest_position(b), {}, 2};
-    record.sources[0] = {a, 1.0 - t};
-    record.sources[1] = {b, t};
+VertexId MeshEdit::add_node(const VertexRecord& record) {
     nodes_added_.push_back(record);
     mesh_.rest_positions_.push_back(record.rest_position);
     mesh_.incident_elements_.emplace_back();
     ++mesh_.num_nodes_;
-    return n;
+    return record.id;
+}
+
+VertexId MeshEdit::add_node_between(VertexId a, VertexId b, double t) {
+    VertexRecord record{VertexId(mesh_.node_capacity()),
+                        (1.0 - t) * mesh_.rest_position(a) + t * mesh_.rest_position(b),
+                        {},
+                        2};
+    record.sources[0] = {a, 1.0 - t};
+    record.sources[1] = {b, t};
+    return add_node(record);
 }
 
 CellId MeshEdit::divide(const RingElement& at, VertexId middle) {
@@ -226,7 +244,7 @@ CellId MeshEdit::divide(const RingElement& at, VertexId middle) {
     std::array<VertexId, 4> corners{old[0], old[1], old[2], old[3]};
     const VertexId b = corners[static_cast<std::size_t>(at.corner_b)];
     corners[corner_a] = middle;
-    rewire(kept, at.corner_b, middle);
+    rewire(kept, b, middle);
     mesh_.append_element_row(CellKind::tetrahedron, mesh_.region(kept), corners);
     // Each half of a divided face takes its value, and the face that goes to the added half whole
     // keeps its own. The new face between the halves is inside, as it is joined below.
@@ -272,6 +290,174 @@ const MeshEdit::Bisection& MeshEdit::bisect(CellId e, VertexId a, VertexId b, do
     return bisection_;
 }
 
+/// Makes the cell a polyhedron, and returns its shape.
+CellShape& MeshEdit::shape_of(CellId e) {
+    save(e);
+    if (!mesh_.is_polyhedron(e)) mesh_.set_shape(e, CellKind::polyhedron, mesh_.shape(e));
+    return mesh_.polyhedra_.at(e).shape;
+}
+
+/// Brings the corners of a polyhedron up to date with its shape.
+void MeshEdit::update(CellId e) {
+    Mesh::Polyhedron& cell = mesh_.polyhedra_.at(e);
+    cell.corners.clear();
+    cell.shape.append_corners(cell.corners);
+    cell.neighbors.resize(static_cast<std::size_t>(cell.shape.num_faces()));
+}
+
+VertexId MeshEdit::divide_edge(const Dart& d, double t) {
+    require_alive(d.face.cell);
+    const VertexId a = from(mesh_, d), b = to(mesh_, d);
+    if (!(t > 0.0 && t < 1.0))
+        throw InputError("edit: the place " + std::to_string(t) + " is not between 0 and 1");
+    std::vector<CellId> cells;
+    append_cells_at_edge(mesh_, d.face.cell, a, b, cells);
+    const VertexId middle = add_node_between(a, b, t);
+    for (const CellId e : cells) {
+        CellShape& shape = shape_of(e);
+        for (const auto& [first, second] : {std::pair(a, b), std::pair(b, a)}) {
+            const Dart side = find_dart(mesh_, e, first, second);
+            shape.insert_corner(side.face.face, side.position + 1, middle);
+        }
+        update(e);
+        touched_.push_back({middle, e});
+    }
+    return middle;
+}
+
+/// Divides one side of a face, and returns its parts.
+std::pair<FaceId, FaceId> MeshEdit::divide_side(FaceId f, VertexId a, VertexId b) {
+    CellShape& shape = shape_of(f.cell);
+    shape.divide_face(f.face, a, b);
+    update(f.cell);
+    return {f, {f.cell, shape.num_faces() - 1}};
+}
+
+FaceId MeshEdit::divide_face(FaceId f, VertexId a, VertexId b) {
+    require_alive(f.cell);
+    const FaceId other = mesh_.neighbor(f);
+    if (other.is_valid()) {
+        save(f.cell);
+        save(other.cell);
+        mesh_.unglue(f);
+    }
+    const auto [first, second] = divide_side(f, a, b);
+    if (!other.is_valid()) return second;
+    const auto [first_there, second_there] = divide_side(other, b, a);
+    mesh_.glue(first, first_there);
+    mesh_.glue(second, second_there);
+    return second;
+}
+
+VertexId MeshEdit::divide_face_at_centre(FaceId f) {
+    require_alive(f.cell);
+    const int size = mesh_.face_size(f);
+    assert(size <= max_corners);
+    VertexRecord record{VertexId(mesh_.node_capacity()), Vec3::Zero(), {}, size};
+    for (int p = 0; p < size; ++p) {
+        const VertexId n = mesh_.face_corner(f, p);
+        record.sources[static_cast<std::size_t>(p)] = {n, 1.0 / size};
+        record.rest_position += mesh_.rest_position(n);
+    }
+    record.rest_position /= size;
+    const VertexId centre = add_node(record);
+    const FaceId other = mesh_.neighbor(f);
+    if (other.is_valid()) {
+        save(f.cell);
+        save(other.cell);
+        mesh_.unglue(f);
+    }
+    const auto divide_side_there = [&](FaceId side) {
+        shape_of(side.cell).divide_face_by(side.face, centre);
+        update(side.cell);
+        touched_.push_back({centre, side.cell});
+    };
+    divide_side_there(f);
+    if (!other.is_valid()) return centre;
+    divide_side_there(other);
+    for (int i = 0; i < size; ++i) {
+        const FaceId part{f.cell, i == 0 ? f.face : mesh_.num_faces(f.cell) - size + i};
+        const VertexId a = mesh_.face_corner(part, 0), b = mesh_.face_corner(part, 1);
+        mesh_.glue(part, find_dart(mesh_, other.cell, b, a).face);
+    }
+    return centre;
+}
+
+CellId MeshEdit::divide_cell(CellId e, std::span<const VertexId> path) {
+    require_alive(e);
+    CellShape shape = shape_of(e);
+    const std::vector<FaceId> neighbors = mesh_.polyhedron(e).neighbors;
+    const int count = shape.num_faces();
+    struct Side {
+        VertexId from, to;
+        int face;
+        auto operator<=>(const Side&) const = default;
+    };
+    std::vector<Side> sides;
+    for (int f = 0; f < count; ++f) {
+        const auto face = shape.face(f);
+        for (std::size_t p = 0; p < face.size(); ++p)
+            sides.push_back({face[p], face[(p + 1) % face.size()], f});
+    }
+    std::ranges::sort(sides);
+    const auto face_with = [&](VertexId a, VertexId b) {
+        const auto it = std::ranges::lower_bound(sides, Side{a, b, -1});
+        assert(it != sides.end() && it->from == a && it->to == b);
+        return it->face;
+    };
+    std::vector<std::pair<VertexId, VertexId>> on_path;
+    for (std::size_t i = 0; i < path.size(); ++i)
+        on_path.emplace_back(path[i], path[(i + 1) % path.size()]);
+    std::ranges::sort(on_path);
+    const auto is_on_path = [&](VertexId a, VertexId b) {
+        return std::ranges::binary_search(on_path, std::pair(a, b)) ||
+               std::ranges::binary_search(on_path, std::pair(b, a));
+    };
+    // The faces to the left of the path, and all that are joined to them across other edges.
+    std::vector<std::uint8_t> is_left(static_cast<std::size_t>(count), 0);
+    std::vector<int> reached;
+    const auto reach = [&](int f) {
+        if (std::exchange(is_left[static_cast<std::size_t>(f)], 1) == 0) reached.push_back(f);
+    };
+    for (const auto& [a, b] : on_path) reach(face_with(a, b));
+    // NOLINTNEXTLINE(modernize-loop-convert): the list grows in the loop
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+        const auto face = shape.face(reached[i]);
+        for (std::size_t p = 0; p < face.size(); ++p) {
+            const VertexId a = face[p], b = face[(p + 1) % face.size()];
+            if (!is_on_path(a, b)) reach(face_with(b, a));
+        }
+    }
+    assert(static_cast<int>(reached.size()) < count);
+
+    const CellId added(mesh_.element_capacity());
+    mesh_.append_element_row(CellKind::polyhedron, mesh_.region(e), {});
+    parents_.push_back(e);
+    Mesh::Polyhedron& right = mesh_.polyhedra_[added];
+    Mesh::Polyhedron& left = mesh_.polyhedra_.at(e);
+    left.shape = {};
+    left.neighbors.clear();
+    for (int f = 0; f < count; ++f) {
+        const auto i = static_cast<std::size_t>(f);
+        const bool stays = is_left[i] != 0;
+        Mesh::Polyhedron& part = stays ? left : right;
+        const FaceId here{stays ? e : added, part.shape.num_faces()};
+        part.shape.add_face(shape.face(f), shape.is_inside(f));
+        part.neighbors.push_back(neighbors[i]);
+        if (!neighbors[i].is_valid()) continue;
+        save(neighbors[i].cell);
+        mesh_.set_neighbor(neighbors[i], here);
+    }
+    left.shape.add_face(std::vector(path.rbegin(), path.rend()), true);
+    right.shape.add_face(path, true);
+    update(e);
+    update(added);
+    mesh_.glue({e, left.shape.num_faces() - 1}, {added, right.shape.num_faces() - 1});
+    for (const VertexId n : right.corners)
+        if (mesh_.corner_of(e, n) < 0) touched_.push_back({n, added});
+    return added;
+}
+
 void MeshEdit::merge(VertexId survivor, VertexId absorbed, CellId at) {
     // The elements of the absorbed node may no longer be connected: search from all that are known.
     std::vector<CellId> starts{at};
@@ -284,7 +470,7 @@ void MeshEdit::merge(VertexId survivor, VertexId absorbed, CellId at) {
         std::vector<CellId> holders;
         collect_star(mesh_, absorbed, start, holders);
         for (const CellId e : holders) {
-            rewire(e, mesh_.corner_of(e, absorbed), survivor);
+            rewire(e, absorbed, survivor);
             touched_.push_back({survivor, e});
         }
     }
@@ -328,14 +514,10 @@ void MeshEdit::split_star(VertexId n, const std::vector<CellId>& candidates,
     for (std::size_t p = 0; p < parts.size(); ++p) {
         VertexId keeper = n;
         if (p > 0) {
-            keeper = VertexId(mesh_.node_capacity());
-            VertexRecord record{keeper, mesh_.rest_position(n), {}, 1};
+            VertexRecord record{VertexId(mesh_.node_capacity()), mesh_.rest_position(n), {}, 1};
             record.sources[0] = {n, 1.0};
-            nodes_added_.push_back(record);
-            mesh_.rest_positions_.push_back(record.rest_position);
-            mesh_.incident_elements_.emplace_back();
-            ++mesh_.num_nodes_;
-            for (const CellId e : parts[p]) rewire(e, mesh_.corner_of(e, n), keeper);
+            keeper = add_node(record);
+            for (const CellId e : parts[p]) rewire(e, n, keeper);
         }
         mesh_.incident_elements_[keeper.index()] = parts[p].front();
     }
@@ -366,28 +548,40 @@ ChangeSet MeshEdit::differences() const {
     for (const SavedRow& row : saved_) rows.push_back(&row);
     std::sort(rows.begin(), rows.end(),
               [](const SavedRow* a, const SavedRow* b) { return a->element < b->element; });
+    const auto add_pairs = [&](FaceId face, FaceId before, FaceId now) {
+        if (before == now) return;
+        if (before.is_valid() && face < before) changes.faces_opened.push_back({face, before});
+        if (now.is_valid() && face < now) changes.faces_closed.push_back({face, now});
+    };
     for (const SavedRow* row : rows) {
         const CellId e = row->element;
         const bool is_alive = mesh_.is_alive(e);
-        const auto corners = mesh_.corners(e);
+        const auto corners = mesh_.row(e);
         const std::span old_corners(row->corners.data(), corners.size());
-        if (row->was_alive && !is_alive)
-            changes.elements_removed.push_back(
-                {e, mesh_.kind(e), mesh_.region(e), {}, {old_corners.begin(), old_corners.end()}});
+        if (row->was_alive && !is_alive) {
+            CellRecord& record = changes.elements_removed.emplace_back(
+                CellRecord{e, row->kind, mesh_.region(e), {}, {}});
+            if (row->kind == CellKind::polyhedron)
+                row->shape.append_corners(record.corners);
+            else
+                record.corners.assign(old_corners.begin(), old_corners.end());
+        }
         if (row->was_alive && is_alive)
             for (std::size_t k = 0; k < corners.size(); ++k)
                 if (old_corners[k] != corners[k])
                     changes.rewired.push_back({e, static_cast<int>(k), old_corners[k], corners[k]});
+        const bool is_polyhedron = mesh_.is_polyhedron(e);
+        if (row->kind != mesh_.kind(e) ||
+            (is_polyhedron && row->shape != mesh_.polyhedron(e).shape))
+            changes.shape_changes.push_back(
+                {e, row->kind, mesh_.kind(e), row->shape,
+                 is_polyhedron ? mesh_.polyhedron(e).shape : CellShape{}});
         if (const std::uint8_t inside = mesh_.inside_faces_[e.index()]; inside != row->inside_faces)
             changes.inside_changes.push_back({e, row->inside_faces, inside});
-        for (int f = 0; f < mesh_.num_faces(e); ++f) {
-            const FaceId face{e, f};
-            const FaceId before = row->neighbors[static_cast<std::size_t>(f)];
-            const FaceId now = is_alive ? mesh_.neighbor(face) : FaceId{};
-            if (before == now) continue;
-            if (before.is_valid() && face < before) changes.faces_opened.push_back({face, before});
-            if (now.is_valid() && face < now) changes.faces_closed.push_back({face, now});
-        }
+        const int count_before = row->num_faces(), count = mesh_.num_faces(e);
+        for (int f = 0; f < std::max(count_before, count); ++f)
+            add_pairs({e, f}, f < count_before ? row->neighbor(f) : FaceId{},
+                      is_alive && f < count ? mesh_.neighbor({e, f}) : FaceId{});
     }
     for (std::size_t i = element_capacity_before_; i < mesh_.element_capacity(); ++i) {
         const CellId e(i);
@@ -397,10 +591,12 @@ ChangeSet MeshEdit::differences() const {
                                           mesh_.region(e),
                                           parents_[i - element_capacity_before_],
                                           {corners.begin(), corners.end()}});
-        changes.inside_changes.push_back({e, 0, mesh_.inside_faces_[i]});
-        for (int f = 0; f < mesh_.num_faces(e); ++f)
-            if (const FaceId face{e, f}, now = mesh_.neighbor(face); face < now)
-                changes.faces_closed.push_back({face, now});
+        if (mesh_.is_polyhedron(e))
+            changes.shape_changes.push_back(
+                {e, CellKind::polyhedron, CellKind::polyhedron, {}, mesh_.polyhedron(e).shape});
+        else
+            changes.inside_changes.push_back({e, 0, mesh_.inside_faces_[i]});
+        for (int f = 0; f < mesh_.num_faces(e); ++f) add_pairs({e, f}, {}, mesh_.neighbor({e, f}));
     }
     std::sort(changes.faces_opened.begin(), changes.faces_opened.end());
     std::sort(changes.faces_closed.begin(), changes.faces_closed.end());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "incise/topology/change_set.h"
+#include "incise/topology/darts.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::topology {
@@ -57,6 +58,26 @@ class MeshEdit {
     /// edge is no tetrahedron.
     const Bisection& bisect(CellId e, VertexId a, VertexId b, double t);
 
+    // The operations of Euler on cells of any kind. A cell that one of them changes becomes a
+    // polyhedron. They need no inverses: those of the record are exact.
+    // Source: Damiand, Lienhardt 2014, Combinatorial Maps, chapter 6.
+
+    /// Divides an edge, in all cells at it, by a new node at (1 - t) a + t b at rest, 0 < t < 1,
+    /// where the dart goes from a to b. Returns the node.
+    VertexId divide_edge(const Dart& d, double t);
+    /// Divides a face, on both sides, by a new edge between two of its corners. The part from
+    /// `a` on to `b`, in the direction of the face, keeps the number of the face, and so does its
+    /// other side. Returns the other part.
+    /// @pre  the corners have no edge in a cell at the face
+    FaceId divide_face(FaceId f, VertexId a, VertexId b);
+    /// Divides a face, on both sides, by a new node that has an edge to each of its corners.
+    /// Returns the node, which is at the mean of the corners at rest.
+    VertexId divide_face_at_centre(FaceId f);
+    /// Divides a cell by a face along a closed path of its edges, which meets no corner twice.
+    /// Returns the new cell: the part to the right of the path, as seen from outside. The new face
+    /// is the last one of both.
+    CellId divide_cell(CellId e, std::span<const VertexId> path);
+
     /// Ends the transaction and returns its record. The epoch of the mesh increases by one, unless
     /// nothing changed.
     ChangeSet commit();
@@ -69,14 +90,25 @@ class MeshEdit {
         int next_face = 0;  ///< the face to the next element of the ring
     };
 
-    /// The state of an element before the edit.
+    /// The state of an element before the edit. The row of a polyhedron is what it was before.
     struct SavedRow {
         CellId element;
         bool was_alive;
-        std::array<VertexId, max_corners>
-            corners;  // only as many as the element has; neighbors too
-        std::array<FaceId, max_faces> neighbors;
+        CellKind kind;
+        std::array<VertexId, max_corners> corners;  // only as many as the row has
+        std::array<FaceId, max_faces> neighbors;    // likewise
         std::uint8_t inside_faces;
+        std::vector<FaceId> neighbors_of_polyhedron;  // instead
+        CellShape shape;
+        FaceId neighbor(int f) const {
+            const auto& all = neighbors_of_polyhedron;
+            const auto i = static_cast<std::size_t>(f);
+            return kind == CellKind::polyhedron ? all[i] : neighbors[i];
+        }
+        int num_faces() const {
+            return kind == CellKind::polyhedron ? static_cast<int>(neighbors_of_polyhedron.size())
+                                                : traits(kind).num_faces;
+        }
     };
     struct TouchedCorner {
         VertexId node;
@@ -88,7 +120,11 @@ class MeshEdit {
     void save(CellId e);
     void touch_face(FaceId f);
     void part(FaceId f);
-    void rewire(CellId e, int corner, VertexId to);
+    void rewire(CellId e, VertexId from, VertexId to);
+    CellShape& shape_of(CellId e);
+    void update(CellId e);
+    std::pair<FaceId, FaceId> divide_side(FaceId f, VertexId a, VertexId b);
+    VertexId add_node(const VertexRecord& record);
     bool collect_ring(CellId e, VertexId a, VertexId b);
     VertexId add_node_between(VertexId a, VertexId b, double t);
     CellId divide(const RingElement& at, VertexId middle);

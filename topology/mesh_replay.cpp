@@ -27,6 +27,9 @@ class MeshReplay {
             ++mesh_.num_nodes_;
         }
         for (const CellRecord& record : changes_.elements_added) add(record);
+        for (const ShapeChange& change : changes_.shape_changes)
+            if (change.cell.index() < changes_.element_capacity_after)
+                mesh_.set_shape(change.cell, change.kind_to, change.to);
         for (const CellRewiring& rewiring : changes_.rewired)
             corner(rewiring.element, rewiring.corner) = rewiring.to;
         for (const FacePair& pair : changes_.faces_closed) mesh_.glue(pair.a, pair.b);
@@ -51,10 +54,13 @@ class MeshReplay {
     void add(const CellRecord& record) {
         const CellId e = record.id;
         if (e.index() == mesh_.element_capacity()) {
-            mesh_.append_element_row(record.kind, record.region, record.corners);
+            mesh_.append_element_row(
+                record.kind, record.region,
+                record.kind == CellKind::polyhedron ? std::span<const VertexId>() : record.corners);
         } else {
             mesh_.alive_[e.index()] = 1;
             ++mesh_.num_elements_;
+            if (record.kind == CellKind::polyhedron) return;
             for (std::size_t k = 0; k < record.corners.size(); ++k)
                 corner(e, static_cast<int>(k)) = record.corners[k];
         }
@@ -68,6 +74,8 @@ class MeshReplay {
         };
         for (const CellRecord& record : changes_.elements_added) touch(record.id);
         for (const CellRewiring& rewiring : changes_.rewired) touch(rewiring.element);
+        for (const ShapeChange& change : changes_.shape_changes)
+            if (change.cell.index() < changes_.element_capacity_after) touch(change.cell);
         for (const auto* pairs : {&changes_.faces_opened, &changes_.faces_closed})
             for (const FacePair& pair : *pairs) {
                 touch(pair.a.cell);

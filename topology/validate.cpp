@@ -6,9 +6,37 @@
 #include <sstream>
 
 #include "incise/base/disjoint_set.h"
-#include "incise/topology/geometry.h"
 
 namespace incise::topology {
+
+namespace {
+
+/// Returns what is wrong with a polyhedron; null if nothing is. A cut can leave one that is flat to
+/// rounding.
+const char* fault_of_polyhedron(const Mesh& mesh, CellId e) {
+    const CellShape shape = mesh.shape(e);
+    std::vector<std::pair<VertexId, VertexId>> edges;
+    for (int f = 0; f < shape.num_faces(); ++f) {
+        const auto face = shape.face(f);
+        for (std::size_t p = 0; p < face.size(); ++p)
+            edges.emplace_back(face[p], face[(p + 1) % face.size()]);
+    }
+    std::ranges::sort(edges);
+    if (std::ranges::adjacent_find(edges) != edges.end()) return "has two edges between two nodes";
+    for (const auto& [a, b] : edges)
+        if (!std::ranges::binary_search(edges, std::pair(b, a)))
+            return "has an edge with one face only";
+    if (std::ssize(mesh.corners(e)) - std::ssize(edges) / 2 + shape.num_faces() != 2)
+        return "is no ball";
+    Box box;
+    for (const VertexId n : mesh.corners(e)) box.extend(mesh.rest_position(n));
+    constexpr double rounding = 1e-9;
+    if (!(rest_volume(mesh, e) >= -rounding * std::pow(box.diagonal().norm(), 3)))
+        return "has a negative volume at rest";
+    return nullptr;
+}
+
+}  // namespace
 
 std::vector<std::string> validate(const Mesh& mesh) {
     std::vector<std::string> found;
@@ -20,10 +48,8 @@ std::vector<std::string> validate(const Mesh& mesh) {
 
     std::size_t num_elements = 0;
     std::vector<std::vector<CellId>> holders(mesh.node_capacity());
-    std::vector<Vec3> x;
     for (const CellId e : mesh.elements()) {
         ++num_elements;
-        x.clear();
         const auto corners = mesh.corners(e);
         for (std::size_t k = 0; k < corners.size(); ++k) {
             if (!mesh.is_alive(corners[k]))
@@ -31,10 +57,13 @@ std::vector<std::string> validate(const Mesh& mesh) {
             if (std::count(corners.begin(), corners.end(), corners[k]) != 1)
                 report("element ", e.value, " has node ", corners[k].value, " twice");
             holders[corners[k].index()].push_back(e);
-            x.push_back(mesh.rest_position(corners[k]));
         }
-        if (!(signed_volume(mesh.kind(e), x) > 0.0))
+        if (mesh.is_polyhedron(e)) {
+            if (const char* fault = fault_of_polyhedron(mesh, e))
+                report("polyhedron ", e.value, " ", fault);
+        } else if (!(rest_volume(mesh, e) > 0.0)) {
             report("element ", e.value, " has no positive volume at rest");
+        }
         for (int f = 0; f < mesh.num_faces(e); ++f) {
             const FaceId face{e, f}, other = mesh.neighbor(face);
             if (!other.is_valid()) continue;

@@ -15,7 +15,7 @@ struct MeshSnapshot {
     std::vector<CellId> anchors;
     std::vector<std::vector<VertexId>> corners;  // of living elements
     std::vector<std::vector<FaceId>> neighbors;  // of living elements
-    std::vector<std::vector<bool>> was_inside;   // of the faces of living elements
+    std::vector<topology::CellShape> shapes;     // of living elements
     bool operator==(const MeshSnapshot&) const = default;
 
     explicit MeshSnapshot(const topology::Mesh& mesh)
@@ -30,13 +30,12 @@ struct MeshSnapshot {
             const CellId e(i);
             corners.emplace_back();
             neighbors.emplace_back();
-            was_inside.emplace_back();
+            shapes.emplace_back();
             if (!mesh.is_alive(e)) continue;
             corners.back().assign(mesh.corners(e).begin(), mesh.corners(e).end());
-            for (int f = 0; f < mesh.num_faces(e); ++f) {
+            shapes.back() = mesh.shape(e);
+            for (int f = 0; f < mesh.num_faces(e); ++f)
                 neighbors.back().push_back(mesh.neighbor({e, f}));
-                was_inside.back().push_back(mesh.was_inside({e, f}));
-            }
         }
     }
 };

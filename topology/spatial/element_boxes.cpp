@@ -60,6 +60,8 @@ void ElementBoxes::apply(const Mesh& mesh, const ChangeSet& changes) {
         stale_.push_back(record.id.index() / group_size);
     for (const auto& record : changes.rewired)
         stale_.push_back(record.element.index() / group_size);
+    for (const auto& change : changes.shape_changes)
+        stale_.push_back(change.cell.index() / group_size);
     std::sort(stale_.begin(), stale_.end());
     stale_.erase(std::unique(stale_.begin(), stale_.end()), stale_.end());
 }
