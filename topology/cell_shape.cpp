@@ -21,13 +21,17 @@ void CellShape::replace_face(int f, std::span<const VertexId> corners) {
     for (auto i = static_cast<std::size_t>(f); i < ends_.size(); ++i) ends_[i] += more;
 }
 
-void CellShape::divide_face(int f, VertexId a, VertexId b) {
+void CellShape::divide_face(int f, VertexId a, VertexId b, VertexId middle) {
     std::vector<VertexId> whole(face(f).begin(), face(f).end());
     std::ranges::rotate(whole, std::ranges::find(whole, a));
     const auto end = std::ranges::find(whole, b);
     std::vector<VertexId> other(end, whole.end());
     other.push_back(a);
     whole.erase(end + 1, whole.end());
+    if (middle.is_valid()) {
+        other.push_back(middle);
+        whole.push_back(middle);
+    }
     replace_face(f, whole);
     add_face(other, is_inside(f));
 }

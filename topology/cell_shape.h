@@ -37,9 +37,10 @@ class CellShape {
         corners_.insert(corners_.begin() + static_cast<std::ptrdiff_t>(begin_of(f)) + position, v);
         for (auto i = static_cast<std::size_t>(f); i < ends_.size(); ++i) ++ends_[i];
     }
-    /// Divides a face by an edge between two of its corners. The part from `a` on to `b` keeps the
-    /// number of the face; the other part becomes the last face.
-    void divide_face(int f, VertexId a, VertexId b);
+    /// Divides a face by an edge between two of its corners, or by two with the new corner `middle`
+    /// between them. The part from `a` on to `b` keeps the number of the face; the other part
+    /// becomes the last face.
+    void divide_face(int f, VertexId a, VertexId b, VertexId middle = {});
     /// Divides a face by a new corner `v` with an edge to each of its corners. The triangle at the
     /// first edge of the face keeps its number; the others become the last faces.
     void divide_face_by(int f, VertexId v);

@@ -114,8 +114,7 @@ void Mesh::set_shape(CellId e, CellKind kind, CellShape shape) {
     } else if (is_polyhedron(e)) {
         const auto& from = polyhedra_.at(e).neighbors;
         const auto to = row_of(kind);
-        for (std::size_t f = 0; f < to.size(); ++f)
-            to[f] = f < from.size() ? from[f] : FaceId{};
+        for (std::size_t f = 0; f < to.size(); ++f) to[f] = f < from.size() ? from[f] : FaceId{};
         polyhedra_.erase(e);
     }
     kinds_[e.index()] = kind;

@@ -313,6 +313,7 @@ VertexId MeshEdit::divide_edge(const Dart& d, double t) {
     std::vector<CellId> cells;
     append_cells_at_edge(mesh_, d.face.cell, a, b, cells);
     const VertexId middle = add_node_between(a, b, t);
+    mesh_.incident_elements_[middle.index()] = cells.front();
     for (const CellId e : cells) {
         CellShape& shape = shape_of(e);
         for (const auto& [first, second] : {std::pair(a, b), std::pair(b, a)}) {
@@ -326,27 +327,59 @@ VertexId MeshEdit::divide_edge(const Dart& d, double t) {
 }
 
 /// Divides one side of a face, and returns its parts.
-std::pair<FaceId, FaceId> MeshEdit::divide_side(FaceId f, VertexId a, VertexId b) {
+std::pair<FaceId, FaceId> MeshEdit::divide_side(FaceId f, VertexId a, VertexId b, VertexId middle) {
     CellShape& shape = shape_of(f.cell);
-    shape.divide_face(f.face, a, b);
+    shape.divide_face(f.face, a, b, middle);
     update(f.cell);
+    if (middle.is_valid()) touched_.push_back({middle, f.cell});
     return {f, {f.cell, shape.num_faces() - 1}};
 }
 
-FaceId MeshEdit::divide_face(FaceId f, VertexId a, VertexId b) {
-    require_alive(f.cell);
+FaceId MeshEdit::divide_face_by(FaceId f, VertexId a, VertexId b, VertexId middle) {
     const FaceId other = mesh_.neighbor(f);
     if (other.is_valid()) {
         save(f.cell);
         save(other.cell);
         mesh_.unglue(f);
     }
-    const auto [first, second] = divide_side(f, a, b);
+    const auto [first, second] = divide_side(f, a, b, middle);
     if (!other.is_valid()) return second;
-    const auto [first_there, second_there] = divide_side(other, b, a);
+    const auto [first_there, second_there] = divide_side(other, b, a, middle);
     mesh_.glue(first, first_there);
     mesh_.glue(second, second_there);
     return second;
+}
+
+FaceId MeshEdit::divide_face(FaceId f, VertexId a, VertexId b) {
+    require_alive(f.cell);
+    return divide_face_by(f, a, b, {});
+}
+
+VertexId MeshEdit::divide_face_beside(FaceId f, VertexId a, VertexId b) {
+    require_alive(f.cell);
+    const Vec3 along = mesh_.rest_position(b) - mesh_.rest_position(a);
+    VertexId farthest;
+    double most = -1.0;
+    for (int p = 0; p < mesh_.face_size(f); ++p) {
+        const VertexId n = mesh_.face_corner(f, p);
+        const Vec3 to_n = mesh_.rest_position(n) - mesh_.rest_position(a);
+        const double size = n == a || n == b ? -1.0 : along.cross(to_n).squaredNorm();
+        if (size <= most) continue;
+        most = size;
+        farthest = n;
+    }
+    constexpr double share = 0.05;
+    VertexRecord record{VertexId(mesh_.node_capacity()), Vec3::Zero(), {}, 3};
+    record.sources[0] = {a, 0.5 * (1.0 - share)};
+    record.sources[1] = {b, 0.5 * (1.0 - share)};
+    record.sources[2] = {farthest, share};
+    for (std::size_t k = 0; k < 3; ++k)
+        record.rest_position +=
+            record.sources[k].weight * mesh_.rest_position(record.sources[k].node);
+    const VertexId middle = add_node(record);
+    mesh_.incident_elements_[middle.index()] = f.cell;
+    divide_face_by(f, a, b, middle);
+    return middle;
 }
 
 VertexId MeshEdit::divide_face_at_centre(FaceId f) {
@@ -361,6 +394,7 @@ VertexId MeshEdit::divide_face_at_centre(FaceId f) {
     }
     record.rest_position /= size;
     const VertexId centre = add_node(record);
+    mesh_.incident_elements_[centre.index()] = f.cell;
     const FaceId other = mesh_.neighbor(f);
     if (other.is_valid()) {
         save(f.cell);
@@ -454,7 +488,10 @@ CellId MeshEdit::divide_cell(CellId e, std::span<const VertexId> path) {
     update(added);
     mesh_.glue({e, left.shape.num_faces() - 1}, {added, right.shape.num_faces() - 1});
     for (const VertexId n : right.corners)
-        if (mesh_.corner_of(e, n) < 0) touched_.push_back({n, added});
+        if (mesh_.corner_of(e, n) < 0) {
+            touched_.push_back({n, added});
+            if (mesh_.incident_element(n) == e) mesh_.incident_elements_[n.index()] = added;
+        }
     return added;
 }
 

@@ -70,6 +70,10 @@ class MeshEdit {
     /// other side. Returns the other part.
     /// @pre  the corners have no edge in a cell at the face
     FaceId divide_face(FaceId f, VertexId a, VertexId b);
+    /// Divides a face likewise by two new edges, from `a` by a new node to `b`. The node is at rest
+    /// between these two, a twentieth of the way to the corner that is farthest from their line.
+    /// Returns the node.
+    VertexId divide_face_beside(FaceId f, VertexId a, VertexId b);
     /// Divides a face, on both sides, by a new node that has an edge to each of its corners.
     /// Returns the node, which is at the mean of the corners at rest.
     VertexId divide_face_at_centre(FaceId f);
@@ -77,6 +81,11 @@ class MeshEdit {
     /// Returns the new cell: the part to the right of the path, as seen from outside. The new face
     /// is the last one of both.
     CellId divide_cell(CellId e, std::span<const VertexId> path);
+
+    /// Returns the record of a node that this edit has added.
+    const VertexRecord& added(VertexId n) const {
+        return nodes_added_[n.index() - node_capacity_before_];
+    }
 
     /// Ends the transaction and returns its record. The epoch of the mesh increases by one, unless
     /// nothing changed.
@@ -123,7 +132,8 @@ class MeshEdit {
     void rewire(CellId e, VertexId from, VertexId to);
     CellShape& shape_of(CellId e);
     void update(CellId e);
-    std::pair<FaceId, FaceId> divide_side(FaceId f, VertexId a, VertexId b);
+    FaceId divide_face_by(FaceId f, VertexId a, VertexId b, VertexId middle);
+    std::pair<FaceId, FaceId> divide_side(FaceId f, VertexId a, VertexId b, VertexId middle);
     VertexId add_node(const VertexRecord& record);
     bool collect_ring(CellId e, VertexId a, VertexId b);
     VertexId add_node_between(VertexId a, VertexId b, double t);

@@ -19,6 +19,7 @@ struct Edge {
     std::uint64_t key() const { return (static_cast<std::uint64_t>(a.index()) << 32) | b.index(); }
     bool operator==(const Edge& other) const { return key() == other.key(); }
     auto operator<=>(const Edge& other) const { return key() <=> other.key(); }
+    static void archive(auto& ar, auto& self) { ar(self.a, self.b); }
 };
 
 inline Edge edge_between(VertexId a, VertexId b) { return a < b ? Edge{a, b} : Edge{b, a}; }

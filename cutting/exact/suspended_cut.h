@@ -13,8 +13,9 @@ namespace incise::cutting {
 /// A suspended cut of a blade. Where another cut divides elements that this one has cut in part,
 /// its front must keep count of the intersections. Otherwise the blade would not find all of its
 /// cut when it goes on.
-struct SuspendedCut {
-    CutFront& front;
+template <class Front>
+struct SuspendedCutOf {
+    Front& front;
     SweptEdge edge;  ///< of the blade, at rest where it is
     /// True if the blade has moved in this step. Tissue is then where it is after the step, else
     /// before.
@@ -26,5 +27,7 @@ struct SuspendedCut {
         return edge.ends_inside(triangle);
     }
 };
+
+using SuspendedCut = SuspendedCutOf<CutFront>;
 
 }  // namespace incise::cutting

@@ -18,7 +18,7 @@ namespace {
 
 /// Returns the volume at rest of the whole body, m3. The sum has more digits than its terms, so
 /// that the volume error has no part from the summation.
-double volume_of(const Mesh& mesh) {
+double volume_at_rest(const Mesh& mesh) {
     long double sum = 0.0;
     for (const CellId e : mesh.elements()) sum += topology::rest_volume(mesh, e);
     return static_cast<double>(sum);
@@ -79,7 +79,7 @@ BodyMeasures measures_of(const Mesh& mesh, const FragmentMesh& fragments) {
     static_cast<FragmentCounts&>(body) = counts_of(mesh, fragments);
     body.elements = mesh.num_elements();
     body.nodes = mesh.num_nodes();
-    body.volume = volume_of(mesh);
+    body.volume = volume_at_rest(mesh);
     body.min_dihedral_angle = metrics.min_dihedral_angle;
     body.min_altitude = metrics.min_altitude;
     body.mean_edge_length = metrics.mean_edge_length;

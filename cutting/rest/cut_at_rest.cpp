@@ -29,7 +29,7 @@ using topology::Mesh;
 namespace {
 
 /// Returns the volume at rest of an element that is no longer in the mesh, m3.
-double volume_of(const topology::CellRecord& removed, const Mesh& mesh) {
+double removed_volume(const topology::CellRecord& removed, const Mesh& mesh) {
     std::array<Vec3, topology::max_corners> x;
     const std::size_t size = std::size(removed.corners);
     for (std::size_t k = 0; k < size; ++k) x[k] = mesh.rest_position(removed.corners[k]);
@@ -240,7 +240,7 @@ class CountingCutter {
         const auto changes = cutter_.carve(mesh_, removal.shape, pose, pose).changes;
         long double removed = 0.0;
         for (const topology::CellRecord& record : changes.elements_removed)
-            removed += volume_of(record, mesh_);
+            removed += removed_volume(record, mesh_);
         counts_.volume_removed = static_cast<double>(removed);
         record_changes(changes);
     }

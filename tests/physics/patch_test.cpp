@@ -58,60 +58,8 @@ TEST(PatchTest, OfEveryLawIsPassed) {
     }
 }
 
-/// The unit cube in n^3 bricks: columns of two wedges each, bricks of six pyramids, hexahedra.
-topology::MeshData mixed_cube(int n, double jitter, std::uint64_t seed) {
-    topology::MeshData data;
-    test::Random random(seed);
-    const auto point = [&](int i, int j, int k) {
-        return std::int64_t{(n + 1) * ((n + 1) * k + j) + i};
-    };
-    for (int k = 0; k <= n; ++k)
-        for (int j = 0; j <= n; ++j)
-            for (int i = 0; i <= n; ++i) {
-                Vec3 x = Vec3(i, j, k) / n;
-                for (int c = 0; c < 3; ++c)
-                    if (const double shift = random.uniform(-jitter, jitter) / n;
-                        x[c] > 0.0 && x[c] < 1.0)
-                        x[c] += shift;
-                data.points.push_back(x);
-            }
-    using Row = std::vector<std::int64_t>;
-    for (int k = 0; k < n; ++k)
-        for (int j = 0; j < n; ++j)
-            for (int i = 0; i < n; ++i) {
-                const Row p{point(i, j, k),
-                            point(i + 1, j, k),
-                            point(i + 1, j + 1, k),
-                            point(i, j + 1, k),
-                            point(i, j, k + 1),
-                            point(i + 1, j, k + 1),
-                            point(i + 1, j + 1, k + 1),
-                            point(i, j + 1, k + 1)};
-                if ((i + 2 * j) % 3 == 0) {  // the same all along a column
-                    data.add_cell(CellKind::wedge, Row{p[0], p[2], p[1], p[4], p[6], p[5]});
-                    data.add_cell(CellKind::wedge, Row{p[0], p[3], p[2], p[4], p[7], p[6]});
-                } else if ((i + j + k) % 2 == 0) {
-                    Vec3 centre = Vec3::Zero();
-                    for (const std::int64_t at : p)
-                        centre += data.points[static_cast<std::size_t>(at)] / 8.0;
-                    data.points.push_back(centre);
-                    const auto& hexahedron = topology::traits(CellKind::hexahedron);
-                    for (int f = 0; f < 6; ++f) {
-                        Row row;  // the base of a pyramid runs the other way, seen from outside
-                        for (const int c : hexahedron.face(f))
-                            row.insert(row.begin(), p[static_cast<std::size_t>(c)]);
-                        row.push_back(std::ssize(data.points) - 1);
-                        data.add_cell(CellKind::pyramid, row);
-                    }
-                } else {
-                    data.add_cell(CellKind::hexahedron, p);
-                }
-            }
-    return data;
-}
-
 TEST(PatchTest, IsPassedByMixturesOfCells) {
-    const Mesh mesh = Mesh::build(mixed_cube(4, 0.15, 5)).mesh;
+    const Mesh mesh = Mesh::build(test::brick_cube(test::Bricks::mixed, 4, 0.15, 5)).mesh;
     const Mat3 F = stretch_and_shear();
     const BoundaryConditions boundary_conditions = affine_boundary(mesh, F);
     for (const NamedLaw& named : test_laws()) {

@@ -112,6 +112,59 @@ bool is_among_tetrahedra(const Mesh& mesh, VertexId n) {
 
 }  // namespace
 
+MeshData brick_cube(Bricks bricks, int n, double jitter, std::uint64_t seed) {
+    MeshData data;
+    Random random(seed);
+    const auto point = [&](int i, int j, int k) {
+        return std::int64_t{(n + 1) * ((n + 1) * k + j) + i};
+    };
+    for (int k = 0; k <= n; ++k)
+        for (int j = 0; j <= n; ++j)
+            for (int i = 0; i <= n; ++i) {
+                Vec3 x = Vec3(i, j, k) / n;
+                for (int c = 0; c < 3; ++c)
+                    if (const double shift = random.uniform(-jitter, jitter) / n;
+                        x[c] > 0.0 && x[c] < 1.0)
+                        x[c] += shift;
+                data.points.push_back(x);
+            }
+    using Row = std::vector<std::int64_t>;
+    for (int k = 0; k < n; ++k)
+        for (int j = 0; j < n; ++j)
+            for (int i = 0; i < n; ++i) {
+                const Row p{point(i, j, k),
+                            point(i + 1, j, k),
+                            point(i + 1, j + 1, k),
+                            point(i, j + 1, k),
+                            point(i, j, k + 1),
+                            point(i + 1, j, k + 1),
+                            point(i + 1, j + 1, k + 1),
+                            point(i, j + 1, k + 1)};
+                const bool is_mixed = bricks == Bricks::mixed;
+                // The same all along a column.
+                if (bricks == Bricks::wedges || (is_mixed && (i + 2 * j) % 3 == 0)) {
+                    data.add_cell(CellKind::wedge, Row{p[0], p[2], p[1], p[4], p[6], p[5]});
+                    data.add_cell(CellKind::wedge, Row{p[0], p[3], p[2], p[4], p[7], p[6]});
+                } else if (bricks == Bricks::pyramids || (is_mixed && (i + j + k) % 2 == 0)) {
+                    Vec3 centre = Vec3::Zero();
+                    for (const std::int64_t at : p)
+                        centre += data.points[static_cast<std::size_t>(at)] / 8.0;
+                    data.points.push_back(centre);
+                    const auto& hexahedron = traits(CellKind::hexahedron);
+                    for (int f = 0; f < 6; ++f) {
+                        Row row;  // the base of a pyramid runs the other way, seen from outside
+                        for (const int c : hexahedron.face(f))
+                            row.insert(row.begin(), p[static_cast<std::size_t>(c)]);
+                        row.push_back(std::ssize(data.points) - 1);
+                        data.add_cell(CellKind::pyramid, row);
+                    }
+                } else {
+                    data.add_cell(CellKind::hexahedron, p);
+                }
+            }
+    return data;
+}
+
 MeshData jittered_cube(int n, double jitter, std::uint64_t seed) {
     MeshData data = box_mesh(CellKind::tetrahedron, Vec3::Zero(), Vec3::Ones(), {n, n, n});
     Random random(seed);

@@ -33,6 +33,12 @@ std::vector<const MeshFamily*> tetrahedral_families();
 /// Kuhn cube of n^3 bricks, side 1, inner points moved by up to `jitter` of an edge.
 topology::MeshData jittered_cube(int n, double jitter, std::uint64_t seed);
 
+/// What the bricks of a cube consist of: hexahedra, two wedges or six pyramids each, or all of
+/// these, with whole columns of wedges.
+enum class Bricks { hexahedra, wedges, pyramids, mixed };
+/// The unit cube in n^3 bricks, inner points moved by up to `jitter` of an edge.
+topology::MeshData brick_cube(Bricks bricks, int n, double jitter, std::uint64_t seed);
+
 /// Random numbers that are the same on every machine: the standard leaves distributions open.
 class Random {
   public:

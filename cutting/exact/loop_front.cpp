@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/cutting/exact/loop_front.h"
+
+#include <unordered_set>
+#include <utility>
+
+#include "incise/topology/darts.h"
+
+namespace incise::cutting {
+
+using topology::ChangeSet;
+using topology::Dart;
+using topology::Mesh;
+
+namespace {
+
+template <class T>
+void insert_sorted(std::vector<T>& values, const T& value) {
+    values.insert(std::ranges::lower_bound(values, value), value);
+}
+
+}  // namespace
+
+void LoopFront::mark(VertexId a, VertexId b) {
+    if (is_marked(a, b)) return;
+    insert_sorted(marked_[a], b);
+    insert_sorted(marked_[b], a);
+}
+
+void LoopFront::set_closed(CellId e, VertexId a, VertexId b) {
+    const auto it = open_.find(e);
+    if (it == open_.end()) return;
+    std::erase(it->second, edge_between(a, b));
+    if (it->second.empty()) open_.erase(it);
+}
+
+void LoopFront::divide(const Mesh& mesh, CellId kept, CellId added) {
+    const auto it = open_.find(kept);
+    if (it == open_.end()) return;
+    std::vector<Edge> stay, leave;
+    for (const Edge& edge : it->second)
+        (find_dart(mesh, kept, edge.a, edge.b).is_valid() ? stay : leave).push_back(edge);
+    open_.erase(it);
+    if (!stay.empty()) open_[kept] = std::move(stay);
+    if (!leave.empty()) open_[added] = std::move(leave);
+}
+
+void LoopFront::divide(VertexId a, VertexId b, VertexId middle, double local_edge_length) {
+    if (owes(a, b)) {
+        toggle_debt(a, b);
+        toggle_debt(a, middle);
+    }
+    if (!is_marked(a, b)) return;
+    std::erase(marked_[a], b);
+    std::erase(marked_[b], a);
+    mark(a, middle);
+    mark(middle, b);
+    put_on(middle, local_edge_length);
+    const Edge whole = edge_between(a, b);
+    for (auto& [e, edges] : open_) {
+        const auto it = std::ranges::find(edges, whole);
+        if (it == edges.end()) continue;
+        *it = edge_between(a, middle);
+        edges.push_back(edge_between(middle, b));
+    }
+}
+
+void LoopFront::toggle_debt(VertexId a, VertexId b) {
+    const Edge edge = edge_between(a, b);
+    const auto it = std::ranges::find(debts_, edge);
+    if (it == debts_.end())
+        insert_sorted(debts_, edge);
+    else
+        debts_.erase(it);
+}
+
+bool LoopFront::waits(const Mesh& mesh, FaceId f, VertexId n) const {
+    if (!is_on(n)) return false;
+    const int size = mesh.face_size(f);
+    for (int p = 0; p < size; ++p) {
+        if (mesh.face_corner(f, p) != n) continue;
+        return !is_marked(n, mesh.face_corner(f, (p + 1) % size)) &&
+               !is_marked(n, mesh.face_corner(f, (p + size - 1) % size));
+    }
+    return false;
+}
+
+bool LoopFront::is_cut_face(const Mesh& mesh, FaceId f) const {
+    const int size = mesh.face_size(f);
+    for (int p = 0; p < size; ++p)
+        if (!is_marked(mesh.face_corner(f, p), mesh.face_corner(f, (p + 1) % size))) return false;
+    return true;
+}
+
+bool LoopFront::is_on(const Mesh& mesh) const {
+    return std::ranges::all_of(
+        nodes_, [&](const auto& entry) { return entry.first.index() < mesh.node_capacity(); });
+}
+
+/// Marked edges to other nodes on the cut stay: these do not wait in the faces there.
+void LoopFront::forget(VertexId n) {
+    nodes_.erase(n);
+    if (const auto it = marked_.find(n); it != marked_.end()) {
+        for (const VertexId other : std::vector(it->second)) {
+            if (is_on(other)) continue;
+            std::erase(marked_[n], other);
+            std::erase(marked_[other], n);
+            if (marked_[other].empty()) marked_.erase(other);
+        }
+        if (marked_[n].empty()) marked_.erase(n);
+    }
+    std::erase_if(debts_, [&](const Edge& edge) { return edge.a == n || edge.b == n; });
+}
+
+void LoopFront::apply(const Mesh& mesh, const ChangeSet& changes) {
+    if (is_empty()) return;
+    std::unordered_map<VertexId, std::vector<VertexId>> copies;
+    for (const topology::VertexRecord& record : changes.nodes_added) {
+        if (record.num_sources != 1) continue;
+        const VertexId source = record.sources[0].node;
+        copies[source].push_back(record.id);
+        if (is_on(source)) put_on(record.id, local_edge_length(source));
+    }
+    if (!copies.empty()) {
+        const auto all_of = [&](VertexId n) {
+            std::vector<VertexId> all{n};
+            if (const auto it = copies.find(n); it != copies.end())
+                all.insert(all.end(), it->second.begin(), it->second.end());
+            return all;
+        };
+        std::vector<CellId> star;
+        const auto has_edge = [&](VertexId a, VertexId b) {
+            if (!mesh.is_alive(a) || !mesh.is_alive(b)) return false;
+            mesh.star(a, star);
+            return std::ranges::any_of(
+                star, [&](CellId e) { return find_dart(mesh, e, a, b).is_valid(); });
+        };
+        const auto follow = [&](VertexId a, VertexId b, auto add) {
+            for (const VertexId x : all_of(a))
+                for (const VertexId y : all_of(b))
+                    if (has_edge(x, y)) add(x, y);
+        };
+        const auto has_copies = [&](VertexId a, VertexId b) {
+            return copies.contains(a) || copies.contains(b);
+        };
+        const auto before = std::exchange(marked_, {});
+        for (const auto& [a, others] : before)
+            for (const VertexId b : others) {
+                if (b < a) continue;
+                if (has_copies(a, b))
+                    follow(a, b, [&](VertexId x, VertexId y) { mark(x, y); });
+                else
+                    mark(a, b);
+            }
+        for (auto& [e, edges] : open_) {
+            std::vector<Edge> now;
+            for (const Edge& edge : edges)
+                for (const VertexId x : all_of(edge.a))
+                    for (const VertexId y : all_of(edge.b))
+                        if (find_dart(mesh, e, x, y).is_valid()) now.push_back(edge_between(x, y));
+            edges = std::move(now);
+        }
+        const auto debts = std::exchange(debts_, {});
+        for (const Edge& edge : debts)
+            follow(edge.a, edge.b, [&](VertexId x, VertexId y) { toggle_debt(x, y); });
+    }
+    for (const topology::CellRecord& record : changes.elements_removed) open_.erase(record.id);
+    for (const topology::VertexRecord& record : changes.nodes_removed) forget(record.id);
+}
+
+void LoopFront::leave_behind(const Mesh& mesh) {
+    std::unordered_set<VertexId> needed;
+    for (const auto& [e, edges] : open_)
+        for (const Edge& edge : edges) needed.insert({edge.a, edge.b});
+    std::vector<VertexId> finished;
+    std::vector<CellId> star;
+    for (const auto& [n, node] : nodes_) {
+        if (needed.contains(n)) continue;
+        mesh.star(n, star);
+        const bool has_to_wait = std::ranges::any_of(star, [&](CellId e) {
+            for (int f = 0; f < mesh.num_faces(e); ++f)
+                if (waits(mesh, {e, f}, n)) return true;
+            return false;
+        });
+        if (!has_to_wait) finished.push_back(n);
+    }
+    for (const VertexId n : finished) nodes_.erase(n);
+    for (const VertexId n : finished) forget(n);
+}
+
+}  // namespace incise::cutting

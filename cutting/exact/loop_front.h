@@ -1,0 +1,100 @@
+// The state of a cut in progress through cells of any shape.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <unordered_map>
+#include <vector>
+
+#include "incise/base/types.h"
+#include "incise/cutting/exact/edge_list.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/mesh.h"
+
+namespace incise::cutting {
+
+/// Holds the nodes that a cut has made, and the edges that lie on it, where it is not finished.
+///
+/// A cut makes a node wherever it crosses an edge of the mesh. In each face at the edge the node
+/// *waits* for another node of the cut. When that comes, an edge between the two divides the face:
+/// it is *marked*, as it lies on the cut, and it is *open* in the two cells at the face. Where open
+/// edges of a cell form a closed path, a face along the path divides the cell, and they are open no
+/// more. All edges of such a face are marked.
+///
+/// A node waits in a face if neither of its two edges of the face is marked.
+class LoopFront {
+  public:
+    struct Node {
+        double local_edge_length = 0.0;  ///< of the edge on which it was made, at rest, m
+        static void archive(auto& ar, auto& self) { ar(self.local_edge_length); }
+    };
+
+    void put_on(VertexId n, double local_edge_length) {
+        nodes_.try_emplace(n, Node{local_edge_length});
+    }
+    bool is_on(VertexId n) const { return nodes_.contains(n); }
+    double local_edge_length(VertexId n) const {
+        const auto it = nodes_.find(n);
+        return it != nodes_.end() ? it->second.local_edge_length : 0.0;
+    }
+    bool is_empty() const { return nodes_.empty(); }
+    std::size_t size() const { return nodes_.size(); }
+
+    bool is_marked(VertexId a, VertexId b) const {
+        const auto it = marked_.find(a);
+        return it != marked_.end() && std::ranges::find(it->second, b) != it->second.end();
+    }
+    void mark(VertexId a, VertexId b);
+    /// Follows the division of an edge by a new node. The halves of a marked edge are marked, and
+    /// the node is on the cut.
+    void divide(VertexId a, VertexId b, VertexId middle, double local_edge_length);
+    /// Returns the other ends of the marked edges at a node.
+    const std::vector<VertexId>& marked_at(VertexId n) const {
+        static const std::vector<VertexId> none;
+        const auto it = marked_.find(n);
+        return it != marked_.end() ? it->second : none;
+    }
+
+    /// An edge owes a crossing if the blade has passed it at a node of this cut, and made none of
+    /// its own there: the next crossing of the edge makes none either.
+    bool owes(VertexId a, VertexId b) const {
+        return std::ranges::find(debts_, edge_between(a, b)) != debts_.end();
+    }
+    void toggle_debt(VertexId a, VertexId b);
+
+    /// True if the node waits in the face: see above. @pre  it is a corner of the face
+    bool waits(const topology::Mesh& mesh, FaceId f, VertexId n) const;
+    /// True if all edges of the face are marked.
+    bool is_cut_face(const topology::Mesh& mesh, FaceId f) const;
+    /// Returns the edges that are open in a cell.
+    const std::vector<Edge>& open_edges(CellId e) const {
+        static const std::vector<Edge> none;
+        const auto it = open_.find(e);
+        return it != open_.end() ? it->second : none;
+    }
+    void set_open(CellId e, VertexId a, VertexId b) { open_[e].push_back(edge_between(a, b)); }
+    void set_closed(CellId e, VertexId a, VertexId b);
+    /// Follows the division of a cell: open edges that it has lost are those of the added part.
+    void divide(const topology::Mesh& mesh, CellId kept, CellId added);
+
+    /// True if the nodes on the cut exist in the mesh.
+    bool is_on(const topology::Mesh& mesh) const;
+    /// Follows an edit: copies of nodes are on the cut as their sources are.
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+    /// Forgets the nodes round which nothing waits and each path is closed.
+    void leave_behind(const topology::Mesh& mesh);
+
+    static void archive(auto& ar, auto& self) {
+        ar(self.nodes_, self.marked_, self.open_, self.debts_);
+    }
+
+  private:
+    void forget(VertexId n);
+
+    std::unordered_map<VertexId, Node> nodes_;
+    std::unordered_map<VertexId, std::vector<VertexId>> marked_;  // each edge in both directions
+    std::unordered_map<CellId, std::vector<Edge>> open_;
+    std::vector<Edge> debts_;  // in ascending order
+};
+
+}  // namespace incise::cutting

@@ -1,0 +1,32 @@
+// The exact cut through cells of any shape: it divides them along a surface and separates the
+// parts. See docs/cutting.md, Cells of any shape. SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+#include "incise/cutting/exact/loop_front.h"
+#include "incise/cutting/exact/split.h"
+#include "incise/cutting/exact/suspended_cut.h"
+#include "incise/cutting/surfaces/cut_surface.h"
+#include "incise/cutting/surfaces/tissue_motion.h"
+#include "incise/topology/mesh.h"
+
+namespace incise::cutting {
+
+using SuspendedLoops = SuspendedCutOf<LoopFront>;
+
+/// Cuts along a surface, or along what a blade's edge sweeps in this step. A crossed cell becomes
+/// two cells, whatever its kind; a cell beside it keeps its place and gains nodes and edges in its
+/// faces. A cell that the surface crosses in part stays whole until the cut goes on.
+/// Returns the edit, which may be empty.
+/// @param mesh     the body
+/// @param tissue   its motion in this step
+/// @param surface  what the cut follows
+/// @param front    of the cut, from its earlier steps
+/// @param options  see SplitOptions
+/// @param resting  the other cuts in progress
+/// Cost: some microseconds a crossed cell, and the search for them.
+Split split_cells(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
+                  LoopFront& front, const SplitOptions& options, std::span<SuspendedLoops> resting);
+
+}  // namespace incise::cutting
