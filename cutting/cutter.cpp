@@ -41,8 +41,19 @@ Box box_round(const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edg
 
 }  // namespace
 
-Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions)
-    : boxes_(mesh, positions), before_(mesh, positions), now_(mesh, positions) {}
+Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions, bool has_loops)
+    : boxes_(mesh, positions),
+      before_(mesh, positions),
+      now_(mesh, positions),
+      has_loops_(has_loops || std::ranges::any_of(mesh.elements(), [&](CellId e) {
+                     return mesh.kind(e) != topology::CellKind::tetrahedron;
+                 })) {
+    constexpr double share_of_cell = 1e-7;
+    double volume = 0.0;
+    for (const CellId e : mesh.elements()) volume += topology::rest_volume(mesh, e);
+    if (mesh.num_elements() > 0)
+        shift_ = share_of_cell * std::cbrt(volume / static_cast<double>(mesh.num_elements()));
+}
 
 void Cutter::follow_motion(const Mesh& mesh, std::span<const Vec3> positions) {
     std::swap(before_, now_);
@@ -51,6 +62,14 @@ void Cutter::follow_motion(const Mesh& mesh, std::span<const Vec3> positions) {
     for (std::size_t n = 0; n < positions.size(); ++n)
         largest = std::max(largest, (positions[n] - before_.values()[n]).squaredNorm());
     boxes_.move(mesh, positions, std::sqrt(largest));
+    for (const auto& [n, opened] : opened_) {
+        const Vec3& x = positions[n.index()];
+        Vec3 outwards = Vec3::Zero();
+        for (const auto& [previous, next] : opened.around)
+            outwards += (positions[next.index()] - x).cross(positions[previous.index()] - x);
+        if (const double norm = outwards.norm(); norm > 0.0)
+            now_[n] -= opened.margin / norm * outwards;
+    }
     for (Cut& cut : cuts_) cut.has_moved = false;
 }
 
@@ -92,11 +111,23 @@ const Cutter::Cut& Cutter::cut_of(CutId id) const {
 
 Cutter::Cut& Cutter::cut_of(CutId id) { return const_cast<Cut&>(std::as_const(*this).cut_of(id)); }
 
-std::vector<SuspendedCut> Cutter::suspended_cuts(std::optional<std::size_t> worker) {
-    std::vector<SuspendedCut> resting;
+/// Returns the edge of a blade a little to one side. A blade often stops exactly on nodes, edges
+/// and faces of a mesh, where rounding would decide what it has crossed: nodes that a cut has made
+/// lie off their edges by rounding. The direction has no simple ratio to those of a mesh.
+std::vector<Vec3> Cutter::shifted(std::vector<Vec3> edge) const {
+    const Vec3 direction(0.5377, 0.6431, 0.5453);
+    if (has_loops_)
+        for (Vec3& x : edge) x += shift_ * direction;
+    return edge;
+}
+
+template <class Front>
+std::vector<SuspendedCutOf<Front>> Cutter::suspended_cuts(std::optional<std::size_t> worker,
+                                                          Front Cut::*front) {
+    std::vector<SuspendedCutOf<Front>> resting;
     for (std::size_t i = 0; i < cuts_.size(); ++i)
-        if (Cut& cut = cuts_[i]; i != worker && !cut.front.is_empty())
-            resting.push_back({cut.front, {cut.edge, cut.edge}, cut.has_moved});
+        if (Cut& cut = cuts_[i]; i != worker && !(cut.*front).is_empty())
+            resting.push_back({cut.*front, {shifted(cut.edge), shifted(cut.edge)}, cut.has_moved});
     return resting;
 }
 
@@ -111,8 +142,16 @@ Split Cutter::split(CutId id, Mesh& mesh, const std::vector<Vec3>& edge_before,
     Cut& cut = cut_of(id);
     const TissueMotion tissue = motion(mesh);
     Split done;
-    if (!cut.front.is_empty() || tissue.may_meet(box_round(edge_before, edge_after))) {
-        auto resting = suspended_cuts(id.index);
+    if (has_loops_) {
+        if (tissue.may_meet(box_round(edge_before, edge_after))) {
+            auto resting = suspended_cuts(id.index, &Cut::loops);
+            done = noted(
+                split_cells(mesh, tissue, SweptEdge(shifted(edge_before), shifted(edge_after)),
+                            cut.loops, {cut.snap}, resting),
+                id.index);
+        }
+    } else if (!cut.front.is_empty() || tissue.may_meet(box_round(edge_before, edge_after))) {
+        auto resting = suspended_cuts(id.index, &Cut::front);
         done = noted(cutting::split(mesh, tissue, SweptEdge(edge_before, edge_after), cut.front,
                                     {cut.snap}, snap_history_, resting),
                      id.index);
@@ -125,7 +164,11 @@ Split Cutter::split(CutId id, Mesh& mesh, const std::vector<Vec3>& edge_before,
 Split Cutter::end_cut(CutId id, Mesh& mesh, const fragments::FragmentMesh& fragments,
                       const BladeEnd& blade) {
     Cut& cut = cut_of(id);
-    auto resting = suspended_cuts(id.index);
+    if (has_loops_) {
+        cut.loops = {};
+        return {};
+    }
+    auto resting = suspended_cuts(id.index, &Cut::front);
     TissueMotion tissue = motion(mesh);
     tissue.before = tissue.after;  // it rests
     return noted(
@@ -134,8 +177,14 @@ Split Cutter::end_cut(CutId id, Mesh& mesh, const fragments::FragmentMesh& fragm
 }
 
 Split Cutter::split(Mesh& mesh, const CutSurface& surface, double snap) {
+    if (has_loops_) {
+        LoopFront front;
+        auto resting = suspended_cuts(std::nullopt, &Cut::loops);
+        return noted(split_cells(mesh, motion(mesh), surface, front, {snap}, resting),
+                     std::nullopt);
+    }
     CutFront front;
-    auto resting = suspended_cuts(std::nullopt);
+    auto resting = suspended_cuts(std::nullopt, &Cut::front);
     return noted(cutting::split(mesh, motion(mesh), surface, front, {snap}, snap_history_, resting),
                  std::nullopt);
 }
@@ -162,8 +211,54 @@ void Cutter::apply(const Mesh& mesh, const ChangeSet& changes) {
     own_edit_ = {};
     if (!own.history_followed) snap_history_.apply(mesh, changes);
     for (std::size_t i = 0; i < cuts_.size(); ++i)
-        if (i != own.cut) cuts_[i].front.apply(mesh, changes);
+        if (i != own.cut) {
+            cuts_[i].front.apply(mesh, changes);
+            cuts_[i].loops.apply(mesh, changes);
+        }
     boxes_.apply(mesh, changes);
+    if (has_loops_) find_opened(mesh, changes);
+}
+
+/// Finds the opened faces at each node that an edit has touched.
+void Cutter::find_opened(const Mesh& mesh, const ChangeSet& changes) {
+    for (const topology::VertexRecord& record : changes.nodes_removed) opened_.erase(record.id);
+    std::vector<VertexId> touched;
+    for (const CellId e : topology::touched_cells(changes))
+        if (e.index() < mesh.element_capacity() && mesh.is_alive(e))
+            std::ranges::copy(mesh.corners(e), std::back_inserter(touched));
+    std::ranges::sort(touched);
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    std::vector<CellId> star;
+    for (const VertexId n : touched) {
+        opened_.erase(n);
+        mesh.star(n, star);
+        const Vec3& x = mesh.rest_position(n);
+        OpenedNode opened;
+        Vec3 outwards = Vec3::Zero();
+        double area = 0.0, longest = 0.0;
+        for (const CellId e : star)
+            for (int f = 0; f < mesh.num_faces(e); ++f) {
+                const FaceId face{e, f};
+                const int size = mesh.face_size(face);
+                for (int p = 0; p < size; ++p) {
+                    const VertexId at = mesh.face_corner(face, p);
+                    longest = std::max(longest, (mesh.rest_position(at) - x).norm());
+                    if (at != n || !mesh.is_on_cut(face)) continue;
+                    const VertexId previous = mesh.face_corner(face, (p + size - 1) % size),
+                                   next = mesh.face_corner(face, (p + 1) % size);
+                    const Vec3 normal =
+                        (mesh.rest_position(next) - x).cross(mesh.rest_position(previous) - x);
+                    outwards += normal;
+                    area += normal.norm();
+                    opened.around.emplace_back(previous, next);
+                }
+            }
+        // At the end of a cut, both of its sides meet.
+        constexpr double least_share = 0.1;
+        if (!(outwards.norm() > least_share * area)) continue;
+        opened.margin = default_snap * longest;
+        opened_[n] = std::move(opened);
+    }
 }
 
 std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) const {
@@ -189,7 +284,9 @@ std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) cons
 
 bool Cutter::is_on(const Mesh& mesh) const {
     return boxes_.cover(mesh) && now_.values().size() == mesh.node_capacity() &&
-           std::ranges::all_of(cuts_, [&](const Cut& cut) { return cut.front.is_on(mesh); });
+           std::ranges::all_of(cuts_, [&](const Cut& cut) {
+               return cut.front.is_on(mesh) && cut.loops.is_on(mesh);
+           });
 }
 
 }  // namespace incise::cutting

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "incise/base/types.h"
+#include "incise/cutting/exact/loop_splitter.h"
 #include "incise/cutting/exact/snap_history.h"
 #include "incise/cutting/exact/splitter.h"
 #include "incise/cutting/tools/carver.h"
@@ -45,10 +46,18 @@ struct CutId {
 /// and would cross an edge of the mesh twice, or never. The owner of the body gives nodes other
 /// positions after an edit, by rounding or because fragments have joined. Such a change is a part
 /// of the next motion here.
+///
+/// A body of tetrahedra only is cut by splitter.h, any other by loop_splitter.h. There, nodes on
+/// the faces that a cut has opened count as lying inside the body by the tolerance of a cut: what
+/// comes as near to an opened face cuts nothing. So a blade that is withdrawn, or a stroke along a
+/// finished cut, does not slice thin layers off it.
 class Cutter {
   public:
     /// Starts without cuts. Cost: O(n).
-    Cutter(const topology::Mesh& mesh, std::span<const Vec3> positions);
+    /// @param mesh       the body
+    /// @param positions  of its nodes
+    /// @param has_loops  true to cut tetrahedra, too, as other cells are
+    Cutter(const topology::Mesh& mesh, std::span<const Vec3> positions, bool has_loops = false);
 
     /// Follows a motion of the tissue to `positions`. Cuts take it as straight.
     /// Cost: O(n).
@@ -65,14 +74,17 @@ class Cutter {
     CutId begin_cut(double snap);
     /// Cuts along what the edge of a blade sweeps during the last motion of the tissue. Returns the
     /// edit, which may be empty.
-    /// Throws InputError for an unknown cut, and UndividableElement for an element that is no
-    /// tetrahedron. In both cases the mesh is unchanged. Cost: see cutting::split.
+    /// Throws InputError for an unknown cut. The mesh is then unchanged. Cost: see cutting::split
+    /// and cutting::split_cells.
     Split split(CutId cut, topology::Mesh& mesh, const std::vector<Vec3>& edge_before,
                 const std::vector<Vec3>& edge_after);
     /// True if the cut ends inside the body. If false, end_cut() does nothing.
-    bool is_in_tissue(CutId cut) const { return !cut_of(cut).front.is_empty(); }
+    bool is_in_tissue(CutId cut) const {
+        return !cut_of(cut).front.is_empty() || !cut_of(cut).loops.is_empty();
+    }
     /// Ends a cut at the present edge of its blade, in tissue at rest. split() can begin the same
-    /// cut again.
+    /// cut again. Where cells are not all tetrahedra, those that the cut has not crossed stay
+    /// whole.
     /// @param fragments  of the mesh
     /// Throws InputError for an unknown cut. Cost: see cutting::finish.
     Split end_cut(CutId cut, topology::Mesh& mesh, const fragments::FragmentMesh& fragments,
@@ -81,8 +93,6 @@ class Cutter {
     void remove_cut(CutId cut) { cut_of(cut) = {}; }
 
     /// Cuts along a whole surface at once.
-    /// Throws UndividableElement, and leaves the mesh unchanged, for an element that is no
-    /// tetrahedron.
     Split split(topology::Mesh& mesh, const CutSurface& surface, double snap);
     /// Opens the faces that lie nearest to what the edge of a blade sweeps: see faces_to_open().
     Split separate(topology::Mesh& mesh, const std::vector<Vec3>& edge_before,
@@ -113,7 +123,8 @@ class Cutter {
     std::vector<FaceId> contradictory_faces(CutId cut, const topology::Mesh& mesh) const;
     /// Archives everything except where the present motion began.
     static void archive(auto& ar, auto& self) {
-        ar(self.cuts_, self.boxes_, self.snap_history_, self.now_);
+        ar(self.has_loops_, self.shift_, self.cuts_, self.boxes_, self.snap_history_, self.now_,
+           self.opened_);
     }
 
   private:
@@ -121,11 +132,19 @@ class Cutter {
         bool is_in_use = false;
         double snap = 0.0;
         CutFront front;
+        LoopFront loops;         // instead, where cells are not all tetrahedra
         std::vector<Vec3> edge;  // of the blade, after its last motion
         bool has_moved = false;  // true after split() in the present motion
         static void archive(auto& ar, auto& self) {
-            ar(self.is_in_use, self.snap, self.front, self.edge, self.has_moved);
+            ar(self.is_in_use, self.snap, self.front, self.loops, self.edge, self.has_moved);
         }
+    };
+    /// A node on faces that a cut has opened: by how much it counts as lying inside, and its
+    /// neighbours round each of the faces.
+    struct OpenedNode {
+        double margin = 0.0;  // m
+        std::vector<std::pair<VertexId, VertexId>> around;
+        static void archive(auto& ar, auto& self) { ar(self.margin, self.around); }
     };
     /// An edit that this cutter has made and that apply() has not followed yet.
     struct OwnEdit {
@@ -137,7 +156,11 @@ class Cutter {
     Cut& cut_of(CutId id);
     const Cut& cut_of(CutId id) const;
     /// Returns the other cuts in progress, whose fronts an edit by cut `worker` may touch.
-    std::vector<SuspendedCut> suspended_cuts(std::optional<std::size_t> worker);
+    std::vector<Vec3> shifted(std::vector<Vec3> edge) const;
+    template <class Front>
+    std::vector<SuspendedCutOf<Front>> suspended_cuts(std::optional<std::size_t> worker,
+                                                      Front Cut::*front);
+    void find_opened(const topology::Mesh& mesh, const topology::ChangeSet& changes);
     /// Returns the last motion of the tissue. Cost: that of the boxes that edits have changed.
     TissueMotion motion(const topology::Mesh& mesh) {
         boxes_.refresh(mesh, now_.values());
@@ -151,6 +174,9 @@ class Cutter {
     // Positions before and after the last motion, by vertex id.
     topology::NodeField<VertexId, Vec3> before_, now_;
     OwnEdit own_edit_;
+    bool has_loops_;      // true unless all cells are tetrahedra
+    double shift_ = 0.0;  // of blades, m: see shifted()
+    std::unordered_map<VertexId, OpenedNode> opened_;
 };
 
 }  // namespace incise::cutting

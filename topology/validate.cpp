@@ -11,8 +11,7 @@ namespace incise::topology {
 
 namespace {
 
-/// Returns what is wrong with a polyhedron; null if nothing is. A cut can leave one that is flat to
-/// rounding.
+/// Returns what is wrong with a polyhedron; null if nothing is. A cut can leave one that is flat.
 const char* fault_of_polyhedron(const Mesh& mesh, CellId e) {
     const CellShape shape = mesh.shape(e);
     std::vector<std::pair<VertexId, VertexId>> edges;
@@ -30,8 +29,8 @@ const char* fault_of_polyhedron(const Mesh& mesh, CellId e) {
         return "is no ball";
     Box box;
     for (const VertexId n : mesh.corners(e)) box.extend(mesh.rest_position(n));
-    constexpr double rounding = 1e-9;
-    if (!(rest_volume(mesh, e) >= -rounding * std::pow(box.diagonal().norm(), 3)))
+    constexpr double flatness = 1e-6;  // of cells that a cut leaves beside nodes and faces
+    if (!(rest_volume(mesh, e) >= -flatness * std::pow(box.diagonal().norm(), 3)))
         return "has a negative volume at rest";
     return nullptr;
 }

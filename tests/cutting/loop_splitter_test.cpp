@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "incise/cutting/cutter.h"
 #include "incise/cutting/surfaces/plane.h"
 #include "incise/cutting/surfaces/swept_edge.h"
 #include "incise/topology/box_mesh.h"
@@ -138,8 +139,9 @@ std::vector<double> exact_volumes(const std::vector<PlaneOfCut>& planes) {
 /// A mesh that is cut, with what is asked of it after each edit.
 class Body {
   public:
-    explicit Body(const topology::MeshData& data)
-        : mesh(Mesh::build(data).mesh),
+    explicit Body(const topology::MeshData& from)
+        : data(from),
+          mesh(Mesh::build(from).mesh),
           positions(mesh.rest_positions().begin(), mesh.rest_positions().end()),
           volume_before(sum(rest_volumes())) {}
 
@@ -193,6 +195,7 @@ class Body {
         EXPECT_TRUE(test::MeshSnapshot(mesh) == after);
     }
 
+    topology::MeshData data;
     Mesh mesh;
     std::vector<Vec3> positions;
     double volume_before;
@@ -263,6 +266,141 @@ TEST(LoopSplitter, PartsABodyAlongThreePlanes) {
             expect_parts(body, planes, 5e-3);
             body.expect_replay();
         });
+}
+
+/// A body at rest that a cutter cuts.
+class CutBody : public Body {
+  public:
+    explicit CutBody(const topology::MeshData& from) : Body(from), cutter(mesh, positions, true) {}
+
+    Split follow(Split done) {
+        for (const auto& record : done.changes.nodes_added) {
+            Vec3 x = Vec3::Zero();
+            for (int k = 0; k < record.num_sources; ++k)
+                x += record.sources[static_cast<std::size_t>(k)].weight *
+                     positions[record.sources[static_cast<std::size_t>(k)].node.index()];
+            positions.push_back(x);
+        }
+        cutter.apply(mesh, done.changes);
+        EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
+        if (!done.changes.is_empty()) edits.push_back(done.changes);
+        return done;
+    }
+    Split move(CutId cut, const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+        cutter.follow_motion(mesh, positions);
+        return follow(cutter.split(cut, mesh, from, to));
+    }
+    Split cut_along(const CutSurface& surface) {
+        cutter.follow_motion(mesh, positions);
+        return follow(cutter.split(mesh, surface, default_snap));
+    }
+
+    Cutter cutter;
+};
+
+/// An edge that moves in a plane: its middle goes along v, its ends are at +-u.
+struct StraightPath {
+    PlaneOfCut plane;
+    Vec3 u, v;
+    explicit StraightPath(const PlaneOfCut& p, double turn = 0.0) : plane(p) {
+        const Vec3 a = p.normal.unitOrthogonal(), b = p.normal.normalized().cross(a);
+        u = std::cos(turn) * a + std::sin(turn) * b;
+        v = -std::sin(turn) * a + std::cos(turn) * b;
+    }
+    std::vector<Vec3> edge(double along, double reach = 3.0) const {
+        const Vec3 middle = plane.point + along * v;
+        return {middle - reach * u, middle + reach * u};
+    }
+};
+
+TEST(LoopSplitter, CutsNothingMoreAtTheSamePlace) {
+    for_bodies(3, 4, [](Body& whole, Random& random) {
+        CutBody body(whole.data);
+        const auto planes = random_planes(random, 1);
+        std::size_t num_cells = 0;
+        for (int pass = 0; pass < 6; ++pass) {
+            const StraightPath path(planes[0], 0.3 * pass);
+            const CutId cut = body.cutter.begin_cut(default_snap);
+            const int num_steps = 5 + 3 * pass;
+            for (int i = 0; i < num_steps; ++i)
+                body.move(cut, path.edge(-2.0 + 4.0 * i / num_steps),
+                          path.edge(-2.0 + 4.0 * (i + 1) / num_steps));
+            EXPECT_FALSE(body.cutter.is_in_tissue(cut));
+            body.cutter.remove_cut(cut);
+            if (pass == 0) num_cells = body.mesh.num_elements();
+            EXPECT_EQ(body.mesh.num_elements(), num_cells) << "pass " << pass;
+            if (testing::Test::HasFailure()) return;
+        }
+        body.cut_along(Plane(planes[0].point, planes[0].normal));
+        EXPECT_EQ(body.mesh.num_elements(), num_cells);
+        expect_parts(body, planes, 3e-3);
+    });
+}
+
+TEST(LoopSplitter, MayBeWithdrawnAndComeBack) {
+    for_bodies(4, 4, [](Body& whole, Random& random) {
+        CutBody body(whole.data);
+        const auto planes = random_planes(random, 1);
+        const StraightPath path(planes[0]);
+        const CutId cut = body.cutter.begin_cut(default_snap);
+        double at = -2.0;
+        for (const double to : {0.1, -0.15, 0.3, -2.0, 0.35, 0.2, 2.0, -2.0}) {
+            constexpr int num_steps = 9;
+            const double from = at;
+            for (int i = 0; i < num_steps; ++i)
+                body.move(cut, path.edge(from + (to - from) * i / num_steps),
+                          path.edge(from + (to - from) * (i + 1) / num_steps));
+            at = to;
+        }
+        expect_parts(body, planes, 3e-3);
+        EXPECT_FALSE(body.cutter.is_in_tissue(cut));
+    });
+}
+
+TEST(LoopSplitter, StopsOnNodesEdgesAndFaces) {
+    for_bodies(20, 4, [](Body& whole, Random& random) {
+        CutBody body(whole.data);
+        // A plane through a node; half of them in directions of the lattice.
+        const auto node = [&] {
+            return body.mesh.rest_position(VertexId(random.below(body.mesh.node_capacity())));
+        };
+        PlaneOfCut plane;
+        for (;;) {
+            plane.point = node();
+            plane.normal = random.below(2) == 0 ? Vec3(random.grid_point(3) - Vec3::Ones())
+                                                : random.vector(1.0);
+            if (plane.normal.norm() < 0.1) continue;
+            plane.normal.normalize();
+            const auto parts = exact_volumes({plane});
+            if (parts.size() == 2 && parts.front() > 2e-2) break;
+        }
+        const StraightPath path(plane, random.uniform(0.0, 6.0));
+        // It stops where it meets nodes, middles of edges and of faces.
+        std::vector<double> stops;
+        for (int i = 0; i < 6; ++i) {
+            Vec3 x = node();
+            const std::size_t what = random.below(3);
+            for (std::size_t k = 0; k < what; ++k) x += node();
+            stops.push_back((x / static_cast<double>(what + 1) - plane.point).dot(path.v));
+        }
+        if (random.below(3) != 0) std::ranges::sort(stops);  // else it goes back and on
+        stops.push_back(2.0);
+        const CutId cut = body.cutter.begin_cut(default_snap);
+        double at = -2.0;
+        for (const double to : stops) {
+            body.move(cut, path.edge(at), path.edge(to));
+            at = to;
+        }
+        const auto volumes = body.rest_volumes();
+        EXPECT_NEAR(Body::sum(volumes), body.volume_before, 1e-13);
+        const auto expected = exact_volumes({plane});
+        std::vector<double> large;
+        for (const double v : volumes)
+            if (v > 5e-3) large.push_back(v);
+        ASSERT_EQ(large.size(), 2u);
+        EXPECT_NEAR(large.front(), expected.front(), 1e-2);
+        EXPECT_FALSE(body.cutter.is_in_tissue(cut));
+    });
 }
 
 }  // namespace
