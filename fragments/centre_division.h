@@ -8,7 +8,7 @@
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
 
-namespace incise::physics {
+namespace incise::fragments {
 
 /// How a kind of cell is divided. Its centre is the mean of its corners. A face of four corners has
 /// a centre, too, the mean of these. Each edge of such a face makes a tetrahedron with both
@@ -58,4 +58,4 @@ extern template struct CentreDivision<topology::CellKind::hexahedron>;
 extern template struct CentreDivision<topology::CellKind::wedge>;
 extern template struct CentreDivision<topology::CellKind::pyramid>;
 
-}  // namespace incise::physics
+}  // namespace incise::fragments

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/physics/elements/centre_division.h"
+#include "incise/fragments/centre_division.h"
 
-namespace incise::physics {
+namespace incise::fragments {
 
 using topology::CellKind;
 
@@ -44,4 +44,4 @@ template struct CentreDivision<CellKind::hexahedron>;
 template struct CentreDivision<CellKind::wedge>;
 template struct CentreDivision<CellKind::pyramid>;
 
-}  // namespace incise::physics
+}  // namespace incise::fragments
