@@ -25,19 +25,35 @@ typename CentreDivision<kind>::Points CentreDivision<kind>::points(const Corners
     return all;
 }
 
-template <CellKind kind>
-typename CentreDivision<kind>::Corners CentreDivision<kind>::gathered(const Points& f) {
-    Corners all;
-    const Vec3 of_centre = f[num_points - 1] / static_cast<double>(num_corners);
-    for (std::size_t k = 0; k < num_corners; ++k) all[k] = f[k] + of_centre;
-    std::size_t next = num_corners;
-    for (int i = 0; i < traits.num_faces; ++i) {
-        const auto face = traits.face(i);
+namespace {
+
+template <class Division, class Value>
+std::array<Value, Division::num_corners> gather(const std::array<Value, Division::num_points>& f) {
+    std::array<Value, Division::num_corners> all;
+    const Value of_centre =
+        f[Division::num_points - 1] / static_cast<double>(Division::num_corners);
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] = f[k] + of_centre;
+    std::size_t next = all.size();
+    for (int i = 0; i < Division::traits.num_faces; ++i) {
+        const auto face = Division::traits.face(i);
         if (face.size() != 4) continue;
-        const Vec3 of_corner = 0.25 * f[next++];
+        const Value of_corner = 0.25 * f[next++];
         for (const int k : face) all[static_cast<std::size_t>(k)] += of_corner;
     }
     return all;
+}
+
+}  // namespace
+
+template <CellKind kind>
+typename CentreDivision<kind>::Corners CentreDivision<kind>::gathered(const Points& f) {
+    return gather<CentreDivision, Vec3>(f);
+}
+
+template <CellKind kind>
+std::array<double, CentreDivision<kind>::num_corners> CentreDivision<kind>::gathered(
+    const std::array<double, num_points>& f) {
+    return gather<CentreDivision, double>(f);
 }
 
 template struct CentreDivision<CellKind::hexahedron>;

@@ -5,12 +5,14 @@
 #include <cassert>
 #include <cmath>
 
+#include "incise/fragments/cell_weights.h"
 #include "incise/fragments/fragment_update.h"
 #include "incise/topology/geometry.h"
 
 namespace incise::fragments {
 
 using topology::Carriers;
+using topology::CellKind;
 using topology::ChangeSet;
 using topology::FollowedEpoch;
 using topology::max_corners;
@@ -295,7 +297,8 @@ EmbeddedPoint FragmentMesh::embedded(const Mesh& material, VertexId v) const {
 }
 
 EmbeddedPoint FragmentMesh::embedded(ElementId e, const Vec3& x) const {
-    EmbeddedPoint result{e, {}, weights_in_carrier(carrier(e), x), 0};
+    const auto weights = weights_in_carrier(carrier(e), x);
+    EmbeddedPoint result{e, {}, {}, 0};
     const auto nodes = corners(e);
     for (const NodeId n : nodes) {
         if (rest_position(n) != x) continue;
@@ -304,8 +307,13 @@ EmbeddedPoint FragmentMesh::embedded(ElementId e, const Vec3& x) const {
         result.count = 1;
         return result;
     }
-    std::copy(nodes.begin(), nodes.end(), result.nodes.begin());
-    result.count = static_cast<int>(nodes.size());
+    // On a face or an edge of a cell with many corners, most weights are zero.
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+        if (weights[k] == 0.0 && kind(e) != CellKind::tetrahedron) continue;
+        const auto next = static_cast<std::size_t>(result.count++);
+        result.nodes[next] = nodes[k];
+        result.weights[next] = weights[k];
+    }
     return result;
 }
 
@@ -318,8 +326,11 @@ std::array<double, max_corners> FragmentMesh::weights_in_carrier(CarrierId carri
             weights[k] = 1.0;
             return weights;
         }
-    // Only tetrahedra are divided.
-    assert(nodes.size() == 4);
+    if (const CellKind kind = kinds_[carrier.index()]; kind != CellKind::tetrahedron) {
+        std::array<Vec3, max_corners> corners;
+        for (std::size_t k = 0; k < nodes.size(); ++k) corners[k] = rest_position(nodes[k]);
+        return weights_in_cell(kind, std::span(corners).first(nodes.size()), x);
+    }
     Eigen::Matrix3d edges;
     for (int k = 0; k < 3; ++k)
         edges.col(k) =

@@ -145,10 +145,9 @@ class FragmentMesh {
     /// else in the lowest one.
     EmbeddedPoint embedded(const topology::Mesh& material, VertexId v) const;
     /// Returns the combination of the corners of a fragment that is at `x` at rest, m.
-    /// @pre  the fragment is a tetrahedron, or `x` is the place of one of its corners
     EmbeddedPoint embedded(ElementId e, const Vec3& x) const;
     /// Returns the weights of the corners of a carrier, in their order, for a point at `x` at rest,
-    /// m. See embedded().
+    /// m. In a carrier that is no tetrahedron see weights_in_cell().
     std::array<double, topology::max_corners> weights_in_carrier(CarrierId carrier,
                                                                  const Vec3& x) const;
     /// Returns the origins of the corners of a carrier, in their order; see origin().

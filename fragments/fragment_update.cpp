@@ -317,9 +317,12 @@ NodeId FragmentUpdate::add_node(const Group& group) {
         // A light part becomes an element: it goes on from where it was carried.
         const EmbeddedPoint from =
             fragments_.embedded(parent_of(group.fragments.front()), record.rest_position);
-        record.num_sources = from.count;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(from.count); ++k)
-            record.sources[k] = {from.nodes[k], from.weights[k]};
+        record.num_sources = 0;
+        from.for_each([&](NodeId source, double weight) {
+            const auto next = static_cast<std::size_t>(record.num_sources++);
+            assert(next < record.sources.size());
+            record.sources[next] = {source, weight};
+        });
     }
     nodes_added_.push_back(record);
     fragments_.origins_.push_back(group.origin);
