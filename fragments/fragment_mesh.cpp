@@ -7,6 +7,7 @@
 
 #include "incise/fragments/cell_weights.h"
 #include "incise/fragments/fragment_update.h"
+#include "incise/fragments/part_shares.h"
 #include "incise/topology/geometry.h"
 
 namespace incise::fragments {
@@ -205,6 +206,11 @@ void FragmentMesh::go_back(const Mesh& material, const FragmentChanges& back) {
     num_elements_ -= edit.elements_removed.size();
     num_nodes_ += edit.nodes_added.size();
     num_nodes_ -= edit.nodes_removed.size();
+    std::vector<ElementId> changed;
+    for (const CarriedCell& cell : back.cells) changed.insert(changed.end(), {cell.from, cell.to});
+    for (const ShareChange& share : back.shares) changed.push_back(share.fragment);
+    for (const ElementId e : changed)
+        if (e.is_valid()) update_part_shares(material, e);
     truncate(edit.node_capacity_after, edit.element_capacity_after, material.element_capacity());
     is_constrained_.resize(material.node_capacity());
 }
@@ -233,6 +239,28 @@ void FragmentMesh::move_cell(CellId cell, ElementId from, ElementId to) {
     fragment_of_cell_[cell.index()] = to;
     if (from.is_valid()) drop_if_trivial(cells_of_fragment_, from);
     if (to.is_valid()) drop_if_trivial(cells_of_fragment_, to);
+}
+
+bool FragmentMesh::update_part_shares(const Mesh& material, ElementId e) {
+    std::vector<double> shares;
+    if (is_alive(e) && kind(e) != CellKind::tetrahedron) {
+        std::array<Vec3, max_corners> x;
+        const auto origins = origins_of(carrier(e));
+        for (std::size_t k = 0; k < origins.size(); ++k) x[k] = rest_position(origins[k]);
+        const auto at_rest = std::span(x).first(origins.size());
+        std::vector<CellId> own;
+        for (const CellId cell : cells_of(e))
+            if (is_own(cell)) own.push_back(cell);
+        shares = filled_fractions(kind(e), at_rest, material, own);
+        scale_to_volume(shares, kind(e), at_rest, volume(e));
+    }
+    const auto known = part_shares(e);
+    if (std::ranges::equal(known, shares)) return false;
+    if (shares.empty())
+        part_shares_.erase(e);
+    else
+        part_shares_[e] = std::move(shares);
+    return true;
 }
 
 void FragmentMesh::set_fragments(CarrierId carrier, std::vector<ElementId> fragments) {
