@@ -31,6 +31,7 @@ class FragmentArchive {
         archive.require_lists();
         archive.restore_rows();
         archive.restore_lists_of_cells();
+        for (const ElementId e : fragments.elements()) fragments.update_part_shares(material, e);
         if (const auto faults = validate(fragments, material); !faults.empty())
             require(false, faults.front().c_str());
         return fragments;

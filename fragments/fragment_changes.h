@@ -15,7 +15,8 @@ using ElementRecord = topology::ElementRecordOf<NodeId, ElementId>;
 using ElementRewiring = topology::RewiringOf<NodeId, ElementId>;
 using FragmentMeshChanges = topology::MeshChanges<NodeId, ElementId>;
 
-/// A change of the share of a fragment that existed before and after the edit.
+/// A change of the share of a fragment that existed before and after the edit. The share is the
+/// same before and after where only shares of its tetrahedra change: FragmentMesh::part_shares().
 struct ShareChange {
     ElementId fragment;
     double from = 0.0, to = 0.0;

@@ -5,12 +5,15 @@
 #include <cassert>
 #include <cmath>
 
+#include "incise/fragments/cell_weights.h"
 #include "incise/fragments/fragment_update.h"
+#include "incise/fragments/part_shares.h"
 #include "incise/topology/geometry.h"
 
 namespace incise::fragments {
 
 using topology::Carriers;
+using topology::CellKind;
 using topology::ChangeSet;
 using topology::FollowedEpoch;
 using topology::max_corners;
@@ -203,6 +206,11 @@ void FragmentMesh::go_back(const Mesh& material, const FragmentChanges& back) {
     num_elements_ -= edit.elements_removed.size();
     num_nodes_ += edit.nodes_added.size();
     num_nodes_ -= edit.nodes_removed.size();
+    std::vector<ElementId> changed;
+    for (const CarriedCell& cell : back.cells) changed.insert(changed.end(), {cell.from, cell.to});
+    for (const ShareChange& share : back.shares) changed.push_back(share.fragment);
+    for (const ElementId e : changed)
+        if (e.is_valid()) update_part_shares(material, e);
     truncate(edit.node_capacity_after, edit.element_capacity_after, material.element_capacity());
     is_constrained_.resize(material.node_capacity());
 }
@@ -231,6 +239,28 @@ void FragmentMesh::move_cell(CellId cell, ElementId from, ElementId to) {
     fragment_of_cell_[cell.index()] = to;
     if (from.is_valid()) drop_if_trivial(cells_of_fragment_, from);
     if (to.is_valid()) drop_if_trivial(cells_of_fragment_, to);
+}
+
+bool FragmentMesh::update_part_shares(const Mesh& material, ElementId e) {
+    std::vector<double> shares;
+    if (is_alive(e) && kind(e) != CellKind::tetrahedron) {
+        std::array<Vec3, max_corners> x;
+        const auto origins = origins_of(carrier(e));
+        for (std::size_t k = 0; k < origins.size(); ++k) x[k] = rest_position(origins[k]);
+        const auto at_rest = std::span(x).first(origins.size());
+        std::vector<CellId> own;
+        for (const CellId cell : cells_of(e))
+            if (is_own(cell)) own.push_back(cell);
+        shares = filled_fractions(kind(e), at_rest, material, own);
+        scale_to_volume(shares, kind(e), at_rest, volume(e));
+    }
+    const auto known = part_shares(e);
+    if (std::ranges::equal(known, shares)) return false;
+    if (shares.empty())
+        part_shares_.erase(e);
+    else
+        part_shares_[e] = std::move(shares);
+    return true;
 }
 
 void FragmentMesh::set_fragments(CarrierId carrier, std::vector<ElementId> fragments) {
@@ -295,7 +325,8 @@ EmbeddedPoint FragmentMesh::embedded(const Mesh& material, VertexId v) const {
 }
 
 EmbeddedPoint FragmentMesh::embedded(ElementId e, const Vec3& x) const {
-    EmbeddedPoint result{e, {}, weights_in_carrier(carrier(e), x), 0};
+    const auto weights = weights_in_carrier(carrier(e), x);
+    EmbeddedPoint result{e, {}, {}, 0};
     const auto nodes = corners(e);
     for (const NodeId n : nodes) {
         if (rest_position(n) != x) continue;
@@ -304,8 +335,13 @@ EmbeddedPoint FragmentMesh::embedded(ElementId e, const Vec3& x) const {
         result.count = 1;
         return result;
     }
-    std::copy(nodes.begin(), nodes.end(), result.nodes.begin());
-    result.count = static_cast<int>(nodes.size());
+    // On a face or an edge of a cell with many corners, most weights are zero.
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+        if (weights[k] == 0.0 && kind(e) != CellKind::tetrahedron) continue;
+        const auto next = static_cast<std::size_t>(result.count++);
+        result.nodes[next] = nodes[k];
+        result.weights[next] = weights[k];
+    }
     return result;
 }
 
@@ -318,8 +354,11 @@ std::array<double, max_corners> FragmentMesh::weights_in_carrier(CarrierId carri
             weights[k] = 1.0;
             return weights;
         }
-    // Only tetrahedra are divided.
-    assert(nodes.size() == 4);
+    if (const CellKind kind = kinds_[carrier.index()]; kind != CellKind::tetrahedron) {
+        std::array<Vec3, max_corners> corners;
+        for (std::size_t k = 0; k < nodes.size(); ++k) corners[k] = rest_position(nodes[k]);
+        return weights_in_cell(kind, std::span(corners).first(nodes.size()), x);
+    }
     Eigen::Matrix3d edges;
     for (int k = 0; k < 3; ++k)
         edges.col(k) =

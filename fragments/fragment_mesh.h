@@ -102,6 +102,15 @@ class FragmentMesh {
     /// carrier that is whole, or cut in part. It exceeds 1 if cells of others outweigh those that
     /// are missing.
     double volume_share(ElementId e) const { return shares_[e.index()]; }
+    /// Returns by tetrahedron of CentreDivision how much of it the fragment has: all tetrahedra of
+    /// the carrier, times their shares, have the volume of the fragment. What the fragment carries
+    /// of other parts is spread in proportion to its own material. Empty for a tetrahedron, and for
+    /// a fragment whose own material is the whole carrier: it has the volume share of each.
+    /// @lifetime Until the next edit.
+    std::span<const double> part_shares(ElementId e) const {
+        const auto it = part_shares_.find(e);
+        return it == part_shares_.end() ? std::span<const double>() : it->second;
+    }
     /// Returns the volume of the carrier at rest, m3.
     double carrier_volume(ElementId e) const { return volumes_[carriers_[e.index()].index()]; }
     /// Returns the volume of the material that the fragment carries, at rest, m3.
@@ -145,10 +154,9 @@ class FragmentMesh {
     /// else in the lowest one.
     EmbeddedPoint embedded(const topology::Mesh& material, VertexId v) const;
     /// Returns the combination of the corners of a fragment that is at `x` at rest, m.
-    /// @pre  the fragment is a tetrahedron, or `x` is the place of one of its corners
     EmbeddedPoint embedded(ElementId e, const Vec3& x) const;
     /// Returns the weights of the corners of a carrier, in their order, for a point at `x` at rest,
-    /// m. See embedded().
+    /// m. In a carrier that is no tetrahedron see weights_in_cell().
     std::array<double, topology::max_corners> weights_in_carrier(CarrierId carrier,
                                                                  const Vec3& x) const;
     /// Returns the origins of the corners of a carrier, in their order; see origin().
@@ -185,6 +193,9 @@ class FragmentMesh {
         else
             carried_around_.erase(cell);
     }
+    /// Computes the shares of the tetrahedra of a fragment, alive or dead. They depend only on its
+    /// own cells, its carrier and its volume share. Returns true if they have changed.
+    bool update_part_shares(const topology::Mesh& material, ElementId e);
     /// Sets the living fragments of a carrier, in ascending order.
     void set_fragments(CarrierId carrier, std::vector<ElementId> fragments);
     // Lists of which an absent entry means the one id with the number of the key.
@@ -238,6 +249,7 @@ class FragmentMesh {
     std::vector<CarrierId> carriers_;
     std::vector<std::uint8_t> is_alive_;
     std::vector<double> shares_;
+    std::unordered_map<ElementId, std::vector<double>> part_shares_;  // see part_shares()
     std::vector<std::size_t> corner_begin_{0};
     std::vector<NodeId> corners_;
     // By node.

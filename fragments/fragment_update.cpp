@@ -201,7 +201,10 @@ void FragmentUpdate::update_shares() {
         if (!fragments_.is_alive(e)) continue;
         fragments_.shares_[e.index()] = share_of(e);
         fragments_.drop_if_trivial(fragments_.cells_of_fragment_, e);
+        if (fragments_.update_part_shares(material_, e)) part_shares_changed_.push_back(e);
     }
+    make_sorted_set(part_shares_changed_);
+    for (const ElementId e : died_) fragments_.update_part_shares(material_, e);
 }
 
 double FragmentUpdate::share_of(ElementId fragment) {
@@ -317,9 +320,12 @@ NodeId FragmentUpdate::add_node(const Group& group) {
         // A light part becomes an element: it goes on from where it was carried.
         const EmbeddedPoint from =
             fragments_.embedded(parent_of(group.fragments.front()), record.rest_position);
-        record.num_sources = from.count;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(from.count); ++k)
-            record.sources[k] = {from.nodes[k], from.weights[k]};
+        record.num_sources = 0;
+        from.for_each([&](NodeId source, double weight) {
+            const auto next = static_cast<std::size_t>(record.num_sources++);
+            assert(next < record.sources.size());
+            record.sources[next] = {source, weight};
+        });
     }
     nodes_added_.push_back(record);
     fragments_.origins_.push_back(group.origin);
@@ -449,8 +455,9 @@ FragmentChanges FragmentUpdate::differences() {
     std::ranges::sort(edit.rewired, {},
                       [](const auto& r) { return std::pair(r.element, r.corner); });
     for (const auto& [e, before] : shares_before_)
-        if (fragments_.is_alive(e) && fragments_.volume_share(e) != before &&
-            !parent_of(e).is_valid())
+        if (fragments_.is_alive(e) && !parent_of(e).is_valid() &&
+            (fragments_.volume_share(e) != before ||
+             std::ranges::binary_search(part_shares_changed_, e)))
             result.shares.push_back({e, before, fragments_.volume_share(e)});
     std::ranges::sort(result.shares, {}, &ShareChange::fragment);
     std::ranges::sort(fragment_before_, {}, &CellBefore::cell);

@@ -95,6 +95,7 @@ class FragmentUpdate {
     std::vector<ElementId> parents_;              // of the added fragments, in ascending order
     std::vector<std::uint8_t> is_from_own_part_;  // of each, if it is a part of its parent
     std::vector<ElementId> died_;
+    std::vector<ElementId> part_shares_changed_;  // those of their tetrahedra
     std::map<NodeId, NodeId> merged_;  // nodes of parts that were joined again, with lower ones
     std::vector<NodeRecord> nodes_added_, nodes_removed_;
     std::size_t node_capacity_before_ = 0, element_capacity_before_ = 0;

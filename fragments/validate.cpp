@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "incise/base/disjoint_set.h"
+#include "incise/fragments/part_volumes.h"
 #include "incise/topology/geometry.h"
 
 namespace incise::fragments {
@@ -90,7 +91,27 @@ class FragmentCheck {
             report("element ", cell.value, " is in a fragment of another carrier");
     }
 
+    void check_part_shares(ElementId e) {
+        const auto shares = fragments_.part_shares(e);
+        if (shares.empty()) return;
+        std::vector<Vec3> x;
+        for (const NodeId n : fragments_.corners(e)) x.push_back(fragments_.rest_position(n));
+        const PartNumbers volumes = part_volumes(fragments_.kind(e), x);
+        double volume = 0.0;
+        bool are_positive = true;
+        for (std::size_t t = 0; t < shares.size(); ++t) {
+            volume += shares[t] * volumes[t];
+            are_positive = are_positive && shares[t] >= 0.0;
+        }
+        constexpr double rounding = 1e-12;
+        const double expected = fragments_.volume(e);
+        if (!are_positive || !(std::abs(volume - expected) <= rounding * expected))
+            report("the tetrahedra of fragment ", e.value, " have ", volume, " m3, and it has ",
+                   expected);
+    }
+
     void check_fragment(ElementId e) {
+        check_part_shares(e);
         if (!(fragments_.volume_share(e) > 0.0 && std::isfinite(fragments_.volume_share(e))))
             report("fragment ", e.value, " has the share ", fragments_.volume_share(e));
         if (fragments_.cells_of(e).empty()) report("fragment ", e.value, " has no element");

@@ -15,7 +15,8 @@ namespace incise::fragments {
 ///
 /// The invariants are:
 /// - each living cell is in one fragment, of its region; the cells of a fragment name it
-/// - a fragment has cells, and a positive share; shares add up to the volume of the mesh
+/// - a fragment has cells, and a positive share; shares add up to the volume of the mesh, and those
+///   of the tetrahedra of a fragment to its volume
 /// - corners are alive, and copies of the corners of the carrier
 /// - cells that share a face inside a carrier are in one fragment
 /// - fragments of cells that share a face between carriers share the nodes of this face, if both

@@ -8,12 +8,14 @@
 #include <span>
 #include <vector>
 
-#include "incise/physics/elements/centre_division.h"
+#include "incise/fragments/centre_division.h"
 #include "incise/physics/elements/local_nodes.h"
 #include "incise/physics/elements/processor.h"
 #include "incise/physics/elements/simd_heml_elements.h"
 
 namespace incise::physics {
+
+using fragments::CentreDivision;
 
 /// A group of eight cells, as the force loop reads it.
 template <topology::CellKind kind>

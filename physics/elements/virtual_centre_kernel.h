@@ -12,7 +12,7 @@
 #include <string>
 
 #include "incise/base/types.h"
-#include "incise/physics/elements/centre_division.h"
+#include "incise/fragments/centre_division.h"
 #include "incise/physics/elements/heml_kernel.h"
 #include "incise/physics/elements/simd_centre_elements.h"
 #include "incise/topology/cell_kind.h"

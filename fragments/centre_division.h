@@ -3,12 +3,13 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
 
-namespace incise::physics {
+namespace incise::fragments {
 
 /// How a kind of cell is divided. Its centre is the mean of its corners. A face of four corners has
 /// a centre, too, the mean of these. Each edge of such a face makes a tetrahedron with both
@@ -46,16 +47,35 @@ struct CentreDivision {
         return all;
     }
 
+    /// Returns the face of the cell that a tetrahedron has a part of, or all of it.
+    static constexpr int face_of_part(std::size_t part) {
+        int f = 0;
+        for (std::size_t end = 0;; ++f)
+            if (part < (end += traits.face(f).size() == 4 ? 4 : 1)) return f;
+    }
+
     using Corners = std::array<Vec3, num_corners>;
     using Points = std::array<Vec3, num_points>;
     /// Returns the values at all points of a field that is linear in those at the corners.
     static Points points(const Corners& x);
     /// Returns the sums at the corners of what acts at the points, each with its weight.
     static Corners gathered(const Points& f);
+    static std::array<double, num_corners> gathered(const std::array<double, num_points>& f);
 };
+
+/// Returns visit(CentreDivision<kind>()).
+/// @pre  the kind is hexahedron, wedge or pyramid
+template <class Visit>
+auto with_division(topology::CellKind kind, Visit visit) {
+    using topology::CellKind;
+    assert(kind != CellKind::tetrahedron);
+    if (kind == CellKind::hexahedron) return visit(CentreDivision<CellKind::hexahedron>());
+    if (kind == CellKind::wedge) return visit(CentreDivision<CellKind::wedge>());
+    return visit(CentreDivision<CellKind::pyramid>());
+}
 
 extern template struct CentreDivision<topology::CellKind::hexahedron>;
 extern template struct CentreDivision<topology::CellKind::wedge>;
 extern template struct CentreDivision<topology::CellKind::pyramid>;
 
-}  // namespace incise::physics
+}  // namespace incise::fragments

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/fragments/part_shares.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "incise/fragments/part_volumes.h"
+
+namespace incise::fragments {
+
+using topology::CellKind;
+using topology::Mesh;
+
+namespace {
+
+using Triangles = std::vector<std::array<Vec3, 3>>;
+
+/// Appends a face, divided into triangles from its corner with the lowest id. So both cells at the
+/// face divide it in the same way.
+void add_face(const Mesh& material, FaceId face, Triangles& triangles) {
+    const int size = material.face_size(face);
+    int first = 0;
+    for (int k = 1; k < size; ++k)
+        if (material.face_corner(face, k) < material.face_corner(face, first)) first = k;
+    const auto at = [&](int k) {
+        return material.rest_position(material.face_corner(face, (first + k) % size));
+    };
+    for (int k = 2; k < size; ++k) triangles.push_back({at(0), at(k - 1), at(k)});
+}
+
+/// Returns the boundary of some cells together.
+Triangles boundary(const Mesh& material, std::span<const CellId> cells) {
+    Triangles triangles;
+    for (const CellId cell : cells)
+        for (int f = 0; f < material.num_faces(cell); ++f)
+            if (const CellId beyond = material.neighbor({cell, f}).cell;
+                !beyond.is_valid() || !std::ranges::binary_search(cells, beyond))
+                add_face(material, {cell, f}, triangles);
+    return triangles;
+}
+
+double volume_of(std::span<const double> fractions, const PartNumbers& volumes) {
+    return std::inner_product(fractions.begin(), fractions.end(), volumes.begin(), 0.0);
+}
+
+}  // namespace
+
+std::vector<double> filled_fractions(CellKind kind, std::span<const Vec3> corners,
+                                     const Mesh& material, std::span<const CellId> cells) {
+    const PartNumbers volumes = part_volumes(kind, corners);
+    const double whole = std::accumulate(volumes.begin(), volumes.end(), 0.0);
+    double filled = 0.0;
+    for (const CellId cell : cells) filled += rest_volume(material, cell);
+    constexpr double rounding = 1e-10;  // as FragmentParts::share_of
+    if (std::abs(filled - whole) <= rounding * whole) return {};
+    const PartNumbers fractions = part_fractions(kind, corners, boundary(material, cells));
+    constexpr double nothing = 1e-12;  // of the carrier
+    if (volume_of(fractions, volumes) <= nothing * whole) return {};
+    return {fractions.begin(), fractions.begin() + static_cast<std::ptrdiff_t>(num_parts(kind))};
+}
+
+void scale_to_volume(std::vector<double>& fractions, CellKind kind, std::span<const Vec3> corners,
+                     double volume) {
+    if (fractions.empty()) return;
+    const double by = volume / volume_of(fractions, part_volumes(kind, corners));
+    for (double& fraction : fractions) fraction *= by;
+}
+
+}  // namespace incise::fragments
