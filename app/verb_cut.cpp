@@ -11,7 +11,6 @@
 #include "incise/app/verbs.h"
 #include "incise/base/error.h"
 #include "incise/base/number_format.h"
-#include "incise/cutting/exact/undividable.h"
 #include "incise/io/files/atomic_file.h"
 #include "incise/io/files/number_text.h"
 #include "incise/io/mesh/mesh_reader.h"
@@ -102,7 +101,7 @@ Result carry_out(const CutOptions& options) {
     auto file = read_input(options.mesh, {.region_array = options.region_array});
     try {
         auto built = topology::Mesh::build(file.mesh, scenario::weld_advice());
-        const auto mode = job.mode.value_or(cutting::usual_mode(built.mesh));
+        const auto mode = job.mode.value_or(cutting::CutMode::split);
         auto report = cutting::cut_at_rest(built.mesh, job.tools, mode);
         for (const auto* warnings : {&file.warnings, &built.warnings, &report.warnings})
             for (const auto& warning : *warnings) job.warnings.push_back(prefixed(prefix, warning));
@@ -110,8 +109,6 @@ Result carry_out(const CutOptions& options) {
         if (const auto loss = io::loss_in_format(options.out, cut)) job.warnings.push_back(*loss);
         cut.points_may_coincide |= file.mesh.points_may_coincide;
         return {std::move(cut), mode, job.snap, std::move(report), std::move(job.warnings)};
-    } catch (const cutting::UndividableElement& error) {
-        throw InputError(prefixed(prefix, error.what()) + "; use --mode separate");
     } catch (const InputError& error) {
         throw InputError(prefixed(prefix, error.what()));
     }

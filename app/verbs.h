@@ -102,7 +102,7 @@ struct CutOptions {
     std::filesystem::path mesh, out;
     std::vector<CutToolArgument> tools;         ///< in the order of the command line
     std::optional<std::filesystem::path> json;  ///< "-" for standard output
-    std::string mode;                           ///< if empty, cutting::usual_mode() of the mesh
+    std::string mode;                           ///< if empty, "split"
     std::string snap;                           ///< if empty, cutting::default_snap
     std::string region_array = "region";
 };

@@ -22,13 +22,10 @@ constexpr double surface_layer = 0.03;
 /// True if a point is at most so far from a face of its cell that belongs to the surface.
 bool is_at_surface(const topology::Mesh& mesh, std::span<const Vec3> positions,
                    const topology::CellPoint& at, const Vec3& x, double distance) {
-    const topology::CellTraits& traits = topology::traits(mesh.kind(at.cell));
-    const auto corners = mesh.corners(at.cell);
-    for (int f = 0; f < traits.num_faces; ++f) {
+    for (int f = 0; f < mesh.num_faces(at.cell); ++f) {
         if (mesh.neighbor({at.cell, f}).is_valid()) continue;
-        const auto face = traits.face(f);
-        const auto corner = [&](std::size_t k) -> const Vec3& {
-            return positions[corners[static_cast<std::size_t>(face[k])].index()];
+        const auto corner = [&](int k) -> const Vec3& {
+            return positions[mesh.face_corner({at.cell, f}, k).index()];
         };
         const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
         if (std::abs(normal.dot(x - corner(0))) <= distance * normal.norm()) return true;
@@ -107,10 +104,9 @@ void BladeContact::add_points(const physics::Model& model, const TissueSurface& 
         point.impulse = impulses_[cutting.piece] * direction;
         point.largest_force = force;
         solver.begin(point);
-        const auto corners = model.mesh().corners(cutting.tissue.cell);
-        for (std::size_t k = 0; k < corners.size(); ++k)
-            if (cutting.tissue.weights[k] != 0.0)
-                add_shares(model, corners[k], cutting.tissue.weights[k], solver);
+        cutting.tissue.for_each([&](VertexId n, double weight) {
+            if (weight != 0.0) add_shares(model, n, weight, solver);
+        });
     }
 }
 

@@ -23,7 +23,7 @@ double length_of(std::span<const Vec3> way) {
 std::vector<Vec3> SutureContact::way(const physics::Model& model) const {
     std::vector<Vec3> points;
     for (const Stitch& stitch : stitches_)
-        points.push_back(stitch.at.position(model.mesh(), model.mesh_positions()));
+        points.push_back(stitch.at.position(model.mesh_positions()));
     return points;
 }
 
@@ -33,10 +33,29 @@ void SutureContact::tie(const physics::Model& model) {
     const double reach = suture_.reach > 0.0 ? suture_.reach : size_;
     for (const Vec3& x : suture_.points)
         if (const auto at = topology::find_point(mesh, mesh.rest_positions(), x, reach))
-            stitches_.push_back({at->position(mesh, mesh.rest_positions()), *at});
+            stitches_.push_back({at->position(mesh.rest_positions()), *at});
     length_ = length_of(way(model));
     tension_ = 0.0;
 }
+
+namespace {
+
+/// Names the present corners of the cell: an edit can have replaced some by copies. Returns false if
+/// the cell has lost one.
+bool follow_corners(const topology::Mesh& mesh, topology::CellPoint& at) {
+    const auto corners = mesh.corners(at.cell);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k) {
+        if (std::ranges::find(corners, at.corners[k]) != corners.end()) continue;
+        const auto copy = std::ranges::find_if(corners, [&](VertexId n) {
+            return mesh.rest_position(n) == mesh.rest_position(at.corners[k]);
+        });
+        if (copy == corners.end()) return false;
+        at.corners[k] = *copy;
+    }
+    return true;
+}
+
+}  // namespace
 
 void SutureContact::follow(const physics::Model& model) {
     const topology::Mesh& mesh = model.mesh();
@@ -45,8 +64,8 @@ void SutureContact::follow(const physics::Model& model) {
         // in another one.
         constexpr double rounding = 1e-6;
         const auto rest = mesh.rest_positions();
-        if (mesh.is_alive(stitch.at.cell) &&
-            (stitch.at.position(mesh, rest) - stitch.rest).norm() <= 1e-9 * size_)
+        if (mesh.is_alive(stitch.at.cell) && follow_corners(mesh, stitch.at) &&
+            (stitch.at.position(rest) - stitch.rest).norm() <= 1e-9 * size_)
             return false;
         const auto at = topology::find_point(mesh, rest, stitch.rest, rounding * size_);
         if (at) stitch.at = *at;
@@ -64,7 +83,7 @@ void SutureContact::add_points(const physics::Model& model, const TissueSurface&
     first_segment_ = solver.size();
     solver.begin_thread({length_, suture_.stiffness, suture_.max_force, tension_ * dt});
     const auto add_end = [&](const topology::CellPoint& at, double sign) {
-        model.structure().embedding().for_each(model.mesh(), at, [&](NodeId node, double weight) {
+        model.structure().embedding().for_each(at, [&](NodeId node, double weight) {
             solver.add_weight(node, sign * weight);
         });
     };

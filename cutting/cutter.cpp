@@ -88,7 +88,7 @@ std::optional<topology::CellPoint> Cutter::tissue_at(const Mesh& mesh,
             if (!box.contains(x)) return;
             constexpr double rounding = 1e-9;  // of the size of the element
             const topology::CellPoint point = topology::point_near(mesh, e, positions, x);
-            if ((point.position(mesh, positions) - x).norm() <= rounding * box.diagonal().norm())
+            if ((point.position(positions) - x).norm() <= rounding * box.diagonal().norm())
                 found = point;
         });
     return found;

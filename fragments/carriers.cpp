@@ -27,6 +27,7 @@ Carriers carriers_of(const Mesh& mesh, const FragmentMesh& fragments) {
         carriers.of_cell.push_back(Carriers::whole);
         if (is_whole(mesh, fragments, e)) continue;
         const CarrierId carrier = fragments.carrier_of_cell(e);
+        if (fragments.origins_of(carrier).size() != 4) continue;
         std::int64_t& row = row_of[carrier.index()];
         if (row == Carriers::whole) {
             row = std::ssize(carriers.corners);

@@ -39,11 +39,11 @@ class Embedding {
     /// Calls visit(node, weight) for the nodes that a point in a cell follows; for some of them
     /// more than once.
     template <class Visit>
-    void for_each(const topology::Mesh& mesh, const topology::CellPoint& at, Visit visit) const {
-        const auto corners = mesh.corners(at.cell);
-        for (std::size_t k = 0; k < corners.size(); ++k)
-            (*this)[corners[k]].for_each(
-                [&](NodeId n, double weight) { visit(n, at.weights[k] * weight); });
+    void for_each(const topology::CellPoint& at, Visit visit) const {
+        at.for_each([&](VertexId v, double of_vertex) {
+            (*this)[v].for_each(
+                [&](NodeId n, double weight) { visit(n, of_vertex * weight); });
+        });
     }
     /// True if each vertex is the node with the same number, as before any division. Positions and
     /// velocities are then those of the nodes.

@@ -36,13 +36,15 @@ class CellRows {
         for (std::size_t k = 0; k < values_.size(); ++k) {
             if (values_[k].empty()) continue;
             const topology::CellTraits& traits = topology::cell_traits[k];
-            py::array_t<Number> array(shape_of(values_[k].size(), traits.num_corners));
+            const bool is_list = for_corners_ && traits.num_corners == 0;  // of polyhedra
+            py::array_t<Number> array(is_list ? std::vector{std::ssize(values_[k])}
+                                              : shape_of(values_[k].size(), traits.num_corners));
             std::copy(values_[k].begin(), values_[k].end(), array.mutable_data());
             if (are_frozen) array.attr("setflags")(py::arg("write") = false);
             by_kind[traits.name] = array;
             last = array;
         }
-        if (by_kind.size() == 1) return last;
+        if (by_kind.size() == 1 && values_.back().empty()) return last;
         if (by_kind.size() > 1) return by_kind;
         return py::array_t<Number>(shape_of(0, 4));
     }
@@ -60,7 +62,7 @@ class CellRows {
 
     bool for_corners_;
     std::vector<py::ssize_t> shape_;
-    std::array<std::vector<Number>, topology::num_cell_kinds> values_;
+    std::array<std::vector<Number>, topology::num_cell_kinds + 1> values_;
 };
 
 using CellArrays = CellRows<std::int64_t>;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "incise/base/error.h"
-#include "incise/cutting/exact/undividable.h"
 #include "incise/cutting/rest/cut_at_rest.h"
 #include "incise/cutting/surfaces/surface_check.h"
 #include "incise/io/surface/surface_reader.h"
@@ -176,20 +175,14 @@ CutResult cut(const std::shared_ptr<PyMesh>& given, const py::sequence& planes,
     CutResult result;
     {
         const Unlocked unlocked;
-        try {
             topology::BuiltMesh built = topology::Mesh::build(*mesh.data);
-            const auto usual = cutting::usual_mode(built.mesh);
-            const auto chosen = !mode              ? usual
-                                : *mode == "split" ? cutting::CutMode::split
-                                                   : cutting::CutMode::separate;
+            const auto chosen = mode == "separate" ? cutting::CutMode::separate
+                                                   : cutting::CutMode::split;
             result.report = cutting::cut_at_rest(built.mesh, tools, chosen);
             MeshData cut = std::move(result.report.mesh);
             cut.points_may_coincide |= mesh.data->points_may_coincide;
             result.mesh = {std::make_shared<const MeshData>(std::move(cut)),
                            result.report.warnings};
-        } catch (const cutting::UndividableElement& error) {
-            throw InputError(std::string(error.what()) + "; use mode='separate'");
-        }
     }
     for (const std::string& warning : result.mesh.warnings) pass_warning(warning);
     return result;

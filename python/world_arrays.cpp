@@ -134,8 +134,19 @@ py::object cells(const World& world) {
         const Handle::Rows& rows = world->rows();
         const topology::Mesh& mesh = world->driver.world().mesh();
         CellArrays arrays(true);
-        for (const CellId e : mesh.elements())
-            for (const VertexId n : mesh.corners(e)) arrays.of(mesh.kind(e)).push_back(rows.row(n));
+        for (const CellId e : mesh.elements()) {
+            auto& values = arrays.of(mesh.kind(e));
+            if (!mesh.is_polyhedron(e)) {
+                for (const VertexId n : mesh.corners(e)) values.push_back(rows.row(n));
+                continue;
+            }
+            values.push_back(mesh.num_faces(e));
+            for (int f = 0; f < mesh.num_faces(e); ++f) {
+                values.push_back(mesh.face_size({e, f}));
+                for (int p = 0; p < mesh.face_size({e, f}); ++p)
+                    values.push_back(rows.row(mesh.face_corner({e, f}, p)));
+            }
+        }
         return arrays.object(true);
     });
 }
@@ -229,7 +240,7 @@ py::object physics(const World& world) {
     // Fragments are counted through the arrays of all kinds.
     CellArrays cells(true), fragments(false);
     CellRows<double> shares(false);
-    std::array<std::int64_t, topology::num_cell_kinds + 1> first{};
+    std::array<std::int64_t, topology::num_cell_kinds + 2> first{};
     for (const topology::CellKind kind : mesh.kinds) ++first[static_cast<std::size_t>(kind) + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<std::int64_t> number;

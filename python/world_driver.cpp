@@ -68,10 +68,7 @@ void WorldDriver::make_step(double end, double part, bool is_last, Report& repor
         world_.step_to(end, inputs_);
     } catch (const sim::ToolError& error) {
         note(report);
-        std::string text = error.what();
-        if (error.undividable.is_valid())
-            text += "; " + scenario::instead_of_dividing(world_.tool(error.tool).shape);
-        throw InputError(at_step(scenario_, number, from, text));
+        throw InputError(at_step(scenario_, number, from, error.what()));
     } catch (const physics::MotionFailure& failure) {
         note(report);
         throw PhysicsError(

@@ -129,25 +129,19 @@ void FrameBuilder::add_contact(const physics::Model& model, const std::vector<Ve
     std::vector<Vec3> area(mesh.node_capacity(), Vec3::Zero());
     for (const auto& [n, f] : forces) force[n.index()] = f;
     constexpr double least_cosine = 0.3;  // a face that is more oblique bears none of the force
-    const auto add_area = [&](const std::array<std::size_t, 3>& triangle) {
-        const Vec3 &a = positions[triangle[0]], &b = positions[triangle[1]],
-                   &c = positions[triangle[2]];
+    const auto add_area = [&](VertexId at_a, VertexId at_b, VertexId at_c) {
+        const Vec3 &a = positions[at_a.index()], &b = positions[at_b.index()],
+                   &c = positions[at_c.index()];
         const Vec3 third = (b - a).cross(c - a) / 6.0;
-        for (const std::size_t n : triangle)
+        for (const std::size_t n : {at_a.index(), at_b.index(), at_c.index()})
             if (-force[n].dot(third) > least_cosine * force[n].norm() * third.norm())
                 area[n] += third;
     };
     if (!forces.empty())
         for (const CellId e : mesh.elements())
             for (int f = 0; f < mesh.num_faces(e); ++f) {
-                if (mesh.neighbor({e, f}).is_valid()) continue;
-                const auto corners = mesh.corners(e);
-                const auto face = topology::traits(mesh.kind(e)).face(f);
-                const auto node = [&](std::size_t k) {
-                    return corners[static_cast<std::size_t>(face[k])].index();
-                };
-                for (std::size_t k = 2; k < face.size(); ++k)
-                    add_area({node(0), node(k - 1), node(k)});
+                if (!mesh.neighbor({e, f}).is_valid())
+                    topology::for_each_triangle(mesh, {e, f}, add_area);
             }
     auto& points = frame_.point_fields;
     points.push_back(

@@ -76,11 +76,9 @@ void Simulation::step(Interval step, const sim::StepInputs& inputs) {
     begins_row_ = false;
     try {
         world_.step_to(step.to, inputs_);
-    } catch (const sim::ToolError& error) {
+    } catch (const sim::ToolError&) {
         report_edits();
-        if (!error.undividable.is_valid()) throw;
-        throw InputError(std::string(error.what()) + "; " +
-                         scenario::instead_of_dividing(world_.tool(error.tool).shape));
+        throw;
     } catch (const physics::MotionFailure& failure) {
         report_edits();
         throw PhysicsError(failure.what() + scenario::remedy_for(failure));

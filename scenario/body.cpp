@@ -232,23 +232,14 @@ std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::
     std::vector<ScriptedTool> tools;
     std::vector<std::string> idle;
     for (ToolSpec spec : scenario.tools) {
-        bool suits_mesh = false;
-        if (mesh)
-            problems.try_to(spec.location, [&] {
-                spec = with_mode(spec, *mesh);
-                suits_mesh = true;
-            });
         const std::string& place = spec.surface ? spec.surface->location : spec.location;
         problems.try_to(place, [&] {
             tools.push_back(build_tool(spec, warnings));
-            if (suits_mesh) {
+            if (mesh) {
                 const ToolKind& kind = kind_of(spec.shape);
                 kind.require_fit(tools.back(), *mesh);
                 if (const auto warning = kind.warning_of_begin(tools.back(), *mesh))
                     warnings.push_back(located(spec.location, *warning));
-                require_divisible(tools.back(), *mesh, end_time);
-                if (const auto near = warning_of_near_misses(tools.back(), *mesh, end_time))
-                    warnings.push_back(located(spec.location, *near));
             }
             if (mesh && !spec.path.empty() && !spec.is_obstacle && !may_meet(tools.back(), body))
                 idle.push_back(located(spec.location, out_of_reach(tools.back(), body)));

@@ -18,7 +18,7 @@ HandTool build_hand_tool(const Value& definition, const std::filesystem::path& f
                             return read_hand_tool(table, folder, why_no_contact, diagnostics);
                         });
     tool.kind = spec.name;
-    tool.shape = build_tool(with_mode(std::move(spec), mesh), tool.warnings).shape;
+    tool.shape = build_tool(spec, tool.warnings).shape;
     return tool;
 }
 

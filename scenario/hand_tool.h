@@ -21,8 +21,7 @@ struct HandTool {
 };
 
 /// Builds a tool from a table with the keys of a [[tool]] section. The keys that say when the tool
-/// is where are left out: `path`, `time`, `close`, `open`, `tighten`. A blade without a mode gets
-/// cutting::usual_mode() of the mesh.
+/// is where are left out: `path`, `time`, `close`, `open`, `tighten`.
 /// @param definition      the table
 /// @param folder          to which names of surface files are relative
 /// @param mesh            the mesh that the tool is for

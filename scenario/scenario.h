@@ -159,7 +159,6 @@ struct ToolSpec {
     std::string name;
     cutting::ToolShape shape = {};
     std::optional<SurfaceFile> surface = {};  ///< build_tool() reads it into the shape
-    bool has_usual_mode = false;              ///< a blade: with_mode() sets its mode
     bool is_obstacle = false;                 ///< a probe that is always present
     /// At least one key, for a blade at least two. The path is empty if it is not known.
     std::vector<TimeKey<Pose>> path = {};

@@ -15,10 +15,6 @@
 
 namespace incise::scenario {
 
-/// Returns the tool with a mode. A blade without a mode gets cutting::usual_mode() of the mesh.
-/// Throws InputError if the tool divides elements and the mesh has no tetrahedra.
-ToolSpec with_mode(ToolSpec spec, const topology::Mesh& mesh);
-
 /// A tool with its path.
 struct ScriptedTool {
     std::string name;
@@ -40,21 +36,9 @@ ScriptedTool build_tool(const ToolSpec& spec, std::vector<std::string>& warnings
 /// @pre  the tool has a surface, or a path with a key
 bool may_meet(const ScriptedTool& tool, const Box& box);
 
-/// Throws InputError if the tool divides elements and its path meets an element of the body at rest
-/// that it cannot divide. A run would stop there. The path after `end_time`, s, is not checked.
-/// Cost: O(#elements) for each key.
-void require_divisible(const ScriptedTool& tool, const topology::Mesh& mesh, double end_time);
-/// Returns a warning if the tool divides elements and its path passes near elements, at rest, that
-/// it cannot divide. Such elements can move into the path. The path after `end_time`, s, is not
-/// checked. Cost: as require_divisible().
-/// @pre  require_divisible() throws nothing
-std::optional<std::string> warning_of_near_misses(const ScriptedTool& tool,
-                                                  const topology::Mesh& mesh, double end_time);
 /// True if the tool divides elements: it cuts, and is no carver and no blade with mode "separate".
 bool divides(const cutting::ToolShape& shape);
 /// Returns advice for messages: how to change the tool if its edits make the stable step too short.
 std::string for_longer_steps(const cutting::ToolShape& shape);
-/// Returns advice for messages: what to do if the tool meets an element that it cannot divide.
-std::string instead_of_dividing(const cutting::ToolShape& shape);
 
 }  // namespace incise::scenario

@@ -13,12 +13,6 @@ namespace incise::sim {
 
 namespace {
 
-double least_altitude(const topology::Mesh& mesh, CellId e) {
-    std::vector<Vec3> x;
-    for (const VertexId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
-    return topology::min_altitude(mesh.kind(e), x);
-}
-
 /// The elements that an edit divided, and the least altitude of them and of their parts.
 struct Divided {
     std::size_t num_parents = 0;
@@ -30,7 +24,7 @@ Divided divided_elements(const topology::Mesh& mesh, const topology::ChangeSet& 
     Divided divided;
     for (const topology::CellRecord& record : changes.elements_added) {
         if (!record.parent.is_valid()) continue;
-        divided.least_altitude = std::min(divided.least_altitude, least_altitude(mesh, record.id));
+        divided.least_altitude = std::min(divided.least_altitude, topology::min_altitude(mesh, record.id));
         if (record.parent.index() < changes.element_capacity_before)
             parents.push_back(record.parent);
     }
@@ -38,14 +32,14 @@ Divided divided_elements(const topology::Mesh& mesh, const topology::ChangeSet& 
     parents.erase(std::unique(parents.begin(), parents.end()), parents.end());
     for (const CellId e : parents)
         if (mesh.is_alive(e))
-            divided.least_altitude = std::min(divided.least_altitude, least_altitude(mesh, e));
+            divided.least_altitude = std::min(divided.least_altitude, topology::min_altitude(mesh, e));
     divided.num_parents = parents.size();
     return divided;
 }
 
 double least_altitude(const topology::Mesh& mesh) {
     double least = std::numeric_limits<double>::infinity();
-    for (const CellId e : mesh.elements()) least = std::min(least, least_altitude(mesh, e));
+    for (const CellId e : mesh.elements()) least = std::min(least, topology::min_altitude(mesh, e));
     return least;
 }
 
@@ -149,13 +143,9 @@ double Ledger::energy_error() const {
 
 double removed_mass(const physics::Model& model, const topology::ChangeSet& changes) {
     double mass = 0.0;
-    std::vector<Vec3> x;
-    for (const topology::CellRecord& record : changes.elements_removed) {
-        x.clear();
-        for (const VertexId n : record.corners)
-            x.push_back(model.mesh().rest_positions()[n.index()]);
-        mass += model.structure().density(record.region) * topology::signed_volume(record.kind, x);
-    }
+    for (const topology::CellRecord& record : changes.elements_removed)
+        mass += model.structure().density(record.region) *
+                topology::rest_volume(model.mesh(), changes, record);
     return mass;
 }
 

@@ -113,10 +113,8 @@ struct StepReport {
 
 /// Thrown if a tool meets something that it cannot cut.
 struct ToolError : InputError {
-    ToolError(const std::string& text, ToolId which, CellId what)
-        : InputError(text), tool(which), undividable(what) {}
+    ToolError(const std::string& text, ToolId which) : InputError(text), tool(which) {}
     ToolId tool;
-    CellId undividable;  ///< no tetrahedron, and the tool would divide it; else invalid
 };
 
 /// A deformable body with its boundary conditions and the tools that cut it.

@@ -7,7 +7,6 @@
 #include <sstream>
 #include <utility>
 
-#include "incise/cutting/exact/undividable.h"
 #include "incise/sim/world_checks.h"
 #include "incise/sim/world_parts.h"
 #include "incise/topology/mesh_metrics.h"
@@ -227,8 +226,7 @@ void World::Parts::cut_with(ToolId id, double end) {
                 std::ostringstream text;
                 text << "tool '" << tool.def().name << "', at t = " << end
                      << " s: " << error.what();
-                const auto* undividable = dynamic_cast<const cutting::UndividableElement*>(&error);
-                throw ToolError(text.str(), id, undividable ? undividable->element : CellId());
+                throw ToolError(text.str(), id);
             }
         }();
         follow(id, done, end);

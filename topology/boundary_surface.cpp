@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "incise/topology/face_triangles.h"
+
 namespace incise::topology {
 
 namespace {
@@ -24,14 +26,13 @@ void BoundarySurface::add_faces(const Mesh& mesh, CellId e) {
     for (int f = 0; f < mesh.num_faces(e); ++f) {
         const FaceId face{e, f};
         if (mesh.neighbor(face).is_valid()) continue;
-        for (int p = 2; p < mesh.face_size(face); ++p) {
+        for_each_triangle(mesh, face, [&](VertexId a, VertexId b, VertexId c) {
             slots_[e].push_back(triangles_.size());
             changed_.push_back(triangles_.size());
-            triangles_.push_back({mesh.face_corner(face, 0), mesh.face_corner(face, p - 1),
-                                  mesh.face_corner(face, p)});
+            triangles_.push_back({a, b, c});
             faces_.push_back(face);
             is_cut_.push_back(mesh.is_on_cut(face) ? 1 : 0);
-        }
+        });
     }
 }
 

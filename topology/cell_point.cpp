@@ -2,15 +2,14 @@
 #include "incise/topology/cell_point.h"
 
 #include <cmath>
+#include <algorithm>
 #include <limits>
 
-#include "incise/topology/geometry.h"
+#include "incise/topology/face_triangles.h"
 
 namespace incise::topology {
 
 namespace {
-
-using Weights = std::array<double, max_corners>;
 
 /// Returns the weights of the corners of a tetrahedron for a point of it near `x`; nothing if the
 /// tetrahedron is flat.
@@ -30,53 +29,60 @@ std::optional<Eigen::Vector4d> weights_near(const std::array<Vec3, 4>& corners, 
 
 }  // namespace
 
-Vec3 CellPoint::position(const Mesh& mesh, std::span<const Vec3> positions) const {
-    const auto corners = mesh.corners(cell);
-    Vec3 x = Vec3::Zero();
-    for (std::size_t k = 0; k < corners.size(); ++k)
-        x += weights[k] * positions[corners[k].index()];
-    return x;
-}
-
 CellPoint point_near(const Mesh& mesh, CellId cell, std::span<const Vec3> positions,
                      const Vec3& x) {
     const auto nodes = mesh.corners(cell);
-    std::array<Vec3, max_corners> corners;
-    for (std::size_t k = 0; k < nodes.size(); ++k) corners[k] = positions[nodes[k].index()];
+    const auto at = [&](VertexId n) -> const Vec3& { return positions[n.index()]; };
     CellPoint found{cell};
-    found.weights[0] = 1.0;
-    const auto count = static_cast<double>(nodes.size());
     if (mesh.kind(cell) == CellKind::tetrahedron) {
-        if (const auto weights = weights_near({corners[0], corners[1], corners[2], corners[3]}, x))
+        std::ranges::copy(nodes, found.corners.begin());
+        found.count = 4;
+        found.weights[0] = 1.0;
+        if (const auto weights =
+                weights_near({at(nodes[0]), at(nodes[1]), at(nodes[2]), at(nodes[3])}, x))
             for (std::size_t k = 0; k < 4; ++k) found.weights[k] = (*weights)[static_cast<int>(k)];
         return found;
     }
-    const Vec3 middle = centre(std::span(corners).first(nodes.size()));
-    const CellTraits& traits_of_cell = traits(mesh.kind(cell));
-    double least = std::numeric_limits<double>::infinity();
-    for (int f = 0; f < traits_of_cell.num_faces; ++f) {
-        const auto face = traits_of_cell.face(f);
-        for (std::size_t k = 2; k < face.size(); ++k) {
-            const std::array<std::size_t, 3> of_triangle = {static_cast<std::size_t>(face[0]),
-                                                            static_cast<std::size_t>(face[k - 1]),
-                                                            static_cast<std::size_t>(face[k])};
-            const std::array<Vec3, 4> tetrahedron = {
-                middle, corners[of_triangle[0]], corners[of_triangle[1]], corners[of_triangle[2]]};
-            const auto weights = weights_near(tetrahedron, x);
-            if (!weights) continue;
-            Vec3 point = Vec3::Zero();
-            for (std::size_t i = 0; i < 4; ++i)
-                point += (*weights)[static_cast<int>(i)] * tetrahedron[i];
-            if (const double square = (point - x).squaredNorm(); square < least) {
-                least = square;
-                Weights all{};
-                for (std::size_t i = 0; i < nodes.size(); ++i) all[i] = (*weights)[0] / count;
-                for (std::size_t i = 0; i < 3; ++i)
-                    all[of_triangle[i]] += (*weights)[static_cast<int>(i + 1)];
-                found.weights = all;
-            }
-        }
+    const bool is_polyhedron = mesh.is_polyhedron(cell);
+    Vec3 apex = at(nodes[0]);
+    if (!is_polyhedron) {
+        for (std::size_t k = 1; k < nodes.size(); ++k) apex += at(nodes[k]);
+        apex /= static_cast<double>(nodes.size());
     }
+    found.corners[0] = nodes[0];
+    found.weights[0] = 1.0;
+    found.count = 1;
+    double least = std::numeric_limits<double>::infinity();
+    const auto look_at = [&](VertexId a, VertexId b, VertexId c) {
+        const std::array<Vec3, 4> tetrahedron = {apex, at(a), at(b), at(c)};
+        const auto weights = weights_near(tetrahedron, x);
+        if (!weights) return;
+        Vec3 point = Vec3::Zero();
+        for (std::size_t i = 0; i < 4; ++i)
+            point += (*weights)[static_cast<int>(i)] * tetrahedron[i];
+        const double square = (point - x).squaredNorm();
+        if (square >= least) return;
+        least = square;
+        found.corners = {nodes[0]};
+        found.weights = {(*weights)[0]};
+        found.count = 1;
+        if (!is_polyhedron)
+            for (std::size_t k = 0; k < nodes.size(); ++k) {
+                found.corners[k] = nodes[k];
+                found.weights[k] = (*weights)[0] / static_cast<double>(nodes.size());
+                found.count = static_cast<int>(k) + 1;
+            }
+        int i = 0;
+        for (const VertexId n : {a, b, c}) {
+            const auto end = found.corners.begin() + found.count;
+            const auto known = std::find(found.corners.begin(), end, n);
+            const auto k = static_cast<std::size_t>(known - found.corners.begin());
+            if (known == end) ++found.count;
+            found.corners[k] = n;
+            found.weights[k] += (*weights)[++i];
+        }
+    };
+    for (int f = 0; f < mesh.num_faces(cell); ++f) for_each_triangle(mesh, {cell, f}, look_at);
     return found;
 }
 
@@ -89,7 +95,7 @@ std::optional<CellPoint> find_point(const Mesh& mesh, std::span<const Vec3> posi
         for (const VertexId n : mesh.corners(e)) box.extend(positions[n.index()]);
         if (box.squaredExteriorDistance(x) > least) continue;
         const CellPoint near = point_near(mesh, e, positions, x);
-        const double square = (near.position(mesh, positions) - x).squaredNorm();
+        const double square = (near.position(positions) - x).squaredNorm();
         // Of cells at the same distance, the first.
         if (found ? square >= least : square > least) continue;
         found = near;

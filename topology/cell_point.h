@@ -12,20 +12,35 @@
 
 namespace incise::topology {
 
-/// A point of a cell: x = sum of weight times x_corner. The weights are not negative and sum to 1.
+/// A point of a cell: x = sum of weight times x_corner, over some of the corners. The weights are
+/// not negative and sum to 1.
 struct CellPoint {
     CellId cell;
-    std::array<double, max_corners> weights{};  ///< by corner; those beyond the last one are 0
+    std::array<VertexId, max_corners> corners{};
+    std::array<double, max_corners> weights{};
+    int count = 0;  ///< of corners that are named
 
+    /// Calls visit(corner, weight) for each of them.
+    template <class Visit>
+    void for_each(Visit visit) const {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+            visit(corners[k], weights[k]);
+    }
     /// Returns its position, m.
     /// @param positions  by node id, m
-    Vec3 position(const Mesh& mesh, std::span<const Vec3> positions) const;
-    static void archive(auto& ar, auto& self) { ar(self.cell, self.weights); }
+    Vec3 position(std::span<const Vec3> positions) const {
+        Vec3 x = Vec3::Zero();
+        for_each([&](VertexId n, double weight) { x += weight * positions[n.index()]; });
+        return x;
+    }
+    static void archive(auto& ar, auto& self) {
+        ar(self.cell, self.corners, self.weights, self.count);
+    }
 };
 
 /// Returns the point of a cell that lies at `x`, or, if `x` is outside, a point of its surface near
 /// `x`. A cell that is no tetrahedron is divided into tetrahedra that meet at its centre, and the
-/// weights are linear in each of them.
+/// weights are linear in each of them; a polyhedron into those that meet at its first corner.
 /// @param positions  by node id, m
 /// @param x          m
 CellPoint point_near(const Mesh& mesh, CellId cell, std::span<const Vec3> positions, const Vec3& x);

@@ -2,7 +2,12 @@
 #include "incise/topology/change_set.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
+
+#include "incise/topology/geometry.h"
+#include "incise/topology/mesh.h"
 
 namespace incise::topology {
 
@@ -21,6 +26,23 @@ ChangeSet inverse(const ChangeSet& changes) {
     }
     for (InsideChange& change : back.inside_changes) std::swap(change.from, change.to);
     return back;
+}
+
+double rest_volume(const Mesh& mesh, const ChangeSet& changes, const CellRecord& record) {
+    if (record.kind != CellKind::polyhedron) {
+        std::array<Vec3, max_corners> x;
+        for (std::size_t k = 0; k < record.corners.size(); ++k)
+            x[k] = mesh.rest_position(record.corners[k]);
+        return signed_volume(record.kind, std::span(x).first(record.corners.size()));
+    }
+    const auto change =
+        std::ranges::lower_bound(changes.shape_changes, record.id, {}, &ShapeChange::cell);
+    const bool is_changed =
+        change != changes.shape_changes.end() && change->cell == record.id;
+    const CellShape& shape = !is_changed                       ? mesh.shape(record.id)
+                             : change->from.num_faces() > 0 ? change->from
+                                                            : change->to;
+    return volume_of(shape, mesh.rest_positions());
 }
 
 std::vector<CellId> touched_cells(const ChangeSet& changes) {

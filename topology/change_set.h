@@ -162,6 +162,12 @@ void invert(MeshChanges<Node, Element>& changes) {
 /// Returns the edit that undoes `changes`.
 ChangeSet inverse(const ChangeSet& changes);
 
+class Mesh;
+/// Returns the volume at rest of a cell that an edit added or removed, m3, with the corners of the
+/// record.
+/// @param mesh  at the end of the edit, with the nodes of the record, also dead ones
+double rest_volume(const Mesh& mesh, const ChangeSet& changes, const CellRecord& record);
+
 /// Returns the cells, dead ones included, that an edit added, removed, joined or parted, or of
 /// which it changed a corner or a face; in ascending order.
 std::vector<CellId> touched_cells(const ChangeSet& changes);

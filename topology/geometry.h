@@ -6,6 +6,7 @@
 
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
+#include "incise/topology/cell_shape.h"
 
 namespace incise::topology {
 
@@ -48,6 +49,20 @@ inline double signed_volume(CellKind kind, std::span<const Vec3> corners) {
         const auto face = t.face(f);
         volume += flux_of_face(static_cast<int>(face.size()), [&](int p) -> Vec3 {
             return corners[static_cast<std::size_t>(face[static_cast<std::size_t>(p)])] - o;
+        });
+    }
+    return volume;
+}
+
+/// Returns the volume of a cell of any shape.
+/// @param positions  by vertex id, m
+inline double volume_of(const CellShape& shape, std::span<const Vec3> positions) {
+    const Vec3& o = positions[shape.face(0)[0].index()];
+    double volume = 0.0;
+    for (int f = 0; f < shape.num_faces(); ++f) {
+        const auto face = shape.face(f);
+        volume += flux_of_face(static_cast<int>(face.size()), [&](int p) -> Vec3 {
+            return positions[face[static_cast<std::size_t>(p)].index()] - o;
         });
     }
     return volume;

@@ -83,15 +83,25 @@ int Mesh::corner_of(CellId e, VertexId n) const {
 }
 
 CellShape Mesh::shape(CellId e) const {
-    if (is_polyhedron(e)) return polyhedron(e).shape;
+    return is_polyhedron(e) ? polyhedron(e).shape : shape_of_row(e, kind(e));
+}
+
+CellShape Mesh::shape_of_row(CellId e, CellKind kind) const {
     CellShape shape;
     std::array<VertexId, max_face_corners> face;
-    for (int f = 0; f < num_faces(e); ++f) {
-        const int size = face_size({e, f});
-        for (int p = 0; p < size; ++p) face[static_cast<std::size_t>(p)] = face_corner({e, f}, p);
-        shape.add_face(std::span(face).first(static_cast<std::size_t>(size)), was_inside({e, f}));
+    const CellTraits& t = traits(kind);
+    for (int f = 0; f < t.num_faces; ++f) {
+        const auto corners = t.face(f);
+        for (std::size_t p = 0; p < corners.size(); ++p)
+            face[p] = row(e)[static_cast<std::size_t>(corners[p])];
+        shape.add_face(std::span(face).first(corners.size()),
+                       (inside_faces_[e.index()] >> f & 1) != 0);
     }
     return shape;
+}
+
+double Mesh::rest_volume_of_polyhedron(CellId e) const {
+    return volume_of(polyhedron(e).shape, rest_positions_);
 }
 
 void Mesh::set_shape(CellId e, CellKind kind, CellShape shape) {
@@ -213,17 +223,7 @@ double rest_area(const Mesh& mesh, FaceId f) {
 
 // The loop runs in ascending order of ids, in which neighbours are near each other in memory.
 double rest_volume(const Mesh& mesh, CellId e) {
-    if (mesh.is_polyhedron(e)) {
-        const Vec3& o = mesh.rest_position(mesh.corners(e)[0]);
-        double volume = 0.0;
-        for (int f = 0; f < mesh.num_faces(e); ++f) {
-            const auto at = [&](int p) -> Vec3 {
-                return mesh.rest_position(mesh.face_corner({e, f}, p)) - o;
-            };
-            volume += flux_of_face(mesh.face_size({e, f}), at);
-        }
-        return volume;
-    }
+    if (mesh.is_polyhedron(e)) return mesh.rest_volume_of_polyhedron(e);
     std::array<Vec3, max_corners> x;
     const auto corners = mesh.corners(e);
     for (std::size_t k = 0; k < corners.size(); ++k) x[k] = mesh.rest_position(corners[k]);
@@ -283,14 +283,21 @@ MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions,
         elements->reserve(mesh.num_elements());
     }
     for (const CellId e : mesh.elements()) {
-        assert(!mesh.is_polyhedron(e));
+        if (mesh.is_polyhedron(e)) {
+            data.faces.push_back(mesh.num_faces(e));
+            for (int f = 0; f < mesh.num_faces(e); ++f) {
+                data.faces.push_back(mesh.face_size({e, f}));
+                for (int p = 0; p < mesh.face_size({e, f}); ++p)
+                    data.faces.push_back(row_of_node[mesh.face_corner({e, f}, p).index()]);
+            }
+        }
         for (const VertexId n : mesh.corners(e)) data.corners.push_back(row_of_node[n.index()]);
         data.kinds.push_back(mesh.kind(e));
         data.offsets.push_back(data.corners.size());
         data.regions.push_back(mesh.region(e));
         if (elements) elements->push_back(e);
         std::int32_t cut_faces = 0;
-        for (int f = 0; f < mesh.num_faces(e); ++f)
+        for (int f = 0; f < std::min(mesh.num_faces(e), max_cut_faces); ++f)
             if (mesh.is_on_cut({e, f})) cut_faces |= 1 << f;
         if (cut_faces == 0 && data.cut_faces.empty()) continue;
         data.cut_faces.resize(data.num_cells());

@@ -92,6 +92,8 @@ class Mesh {
     std::span<const VertexId> corners(CellId e) const {
         return is_polyhedron(e) ? std::span<const VertexId>(polyhedron(e).corners) : row(e);
     }
+    /// Returns the volume of a polyhedron at rest, m3: see rest_volume().
+    double rest_volume_of_polyhedron(CellId e) const;
     /// True if the cell has a shape of its own, which edits have made.
     bool is_polyhedron(CellId e) const { return kinds_[e.index()] == CellKind::polyhedron; }
     /// Returns which corner of `e` the node is; -1 if it is none.
@@ -118,6 +120,9 @@ class Mesh {
     }
     /// Returns the faces of a cell of any kind.
     CellShape shape(CellId e) const;
+    /// Returns the faces that a cell of another kind has, or had before it became a polyhedron.
+    /// @param kind  the kind
+    CellShape shape_of_row(CellId e, CellKind kind) const;
 
     /// True if the face lay inside the body before any cut: it is, or was, joined to another face.
     /// The parts of a face that is divided take its value. The source can name further faces:

@@ -70,7 +70,10 @@ std::string fault_of_lists(const MeshData& data) {
                std::to_string(data.corners.size());
     for (std::size_t c = 0; c < num_cells; ++c) {
         if (static_cast<std::size_t>(data.kinds[c]) >= num_cell_kinds)
-            return "cell " + std::to_string(c) + " is of no kind that is known";
+            return "cell " + std::to_string(c) +
+                   (data.kinds[c] == CellKind::polyhedron
+                        ? " is a polyhedron, which no mesh can begin with: polyhedra come of cuts"
+                        : " is of no kind that is known");
         const CellTraits& t = traits(data.kinds[c]);
         if (data.offsets[c + 1] != data.offsets[c] + static_cast<std::size_t>(t.num_corners))
             return "cell " + std::to_string(c) + " (" + t.name + ") needs " +

@@ -27,6 +27,9 @@ struct Carriers {
     bool operator==(const Carriers&) const = default;
 };
 
+/// The number of faces that have a bit in MeshData::cut_faces.
+inline constexpr int max_cut_faces = 31;
+
 /// Cells over points, numbered from 0 in the order of the source. The contents may be invalid:
 /// Mesh::build checks them.
 struct MeshData {
@@ -36,9 +39,13 @@ struct MeshData {
         0};  ///< number of cells + 1; cell c has corners [offsets[c], offsets[c+1])
     std::vector<std::int64_t> corners;  ///< point numbers, VTK order within a cell
     std::vector<int> regions;           ///< one a cell
+    /// The faces of polyhedra, one cell after the other: the number of faces, then for each face the
+    /// number of its corners and its corners, anticlockwise as seen from outside. Mesh::build() takes
+    /// no polyhedra.
+    std::vector<std::int64_t> faces;
     Carriers carriers;                  ///< empty for a body that was never cut
     /// By cell, bit f for each face f, in the order of cell_kind.h, that is on a cut. Empty if no
-    /// face is. See Mesh::is_on_cut().
+    /// face is. See Mesh::is_on_cut(). Of a polyhedron, the first max_cut_faces have a bit.
     std::vector<std::int32_t> cut_faces;
     /// For messages: the number of each cell and of each point in the source. Empty where these are
     /// the numbers used here.
@@ -54,6 +61,20 @@ struct MeshData {
     /// Returns the corners of cell `c`.
     std::span<const std::int64_t> cell(std::size_t c) const {
         return std::span(corners).subspan(offsets[c], offsets[c + 1] - offsets[c]);
+    }
+
+    /// Calls visit(cell, first) for each polyhedron, with the place of its number of faces in
+    /// `faces`.
+    template <class Visit>
+    void for_each_polyhedron(Visit visit) const {
+        std::size_t at = 0;
+        for (std::size_t c = 0; c < num_cells(); ++c) {
+            if (kinds[c] != CellKind::polyhedron) continue;
+            visit(c, at);
+            const std::int64_t count = faces[at++];
+            for (std::int64_t f = 0; f < count; ++f)
+                at += static_cast<std::size_t>(faces[at]) + 1;
+        }
     }
 
     /// Appends a cell.

@@ -145,11 +145,8 @@ double surface_area(const MeshData& data, const std::vector<SharedFace>& shared_
 
 double mean_element_length(const Mesh& mesh) {
     double volume = 0.0, num_sixths = 0.0;
-    std::vector<Vec3> x;
     for (const CellId e : mesh.elements()) {
-        x.clear();
-        for (const VertexId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
-        volume += signed_volume(mesh.kind(e), x);
+        volume += rest_volume(mesh, e);
         num_sixths += mesh.kind(e) == CellKind::tetrahedron ? 1.0 : 6.0;
     }
     return std::cbrt(6.0 * volume / num_sixths);
@@ -160,6 +157,50 @@ double min_altitude(CellKind kind, std::span<const Vec3> corners) {
     metrics.min_altitude = std::numeric_limits<double>::infinity();
     measure_cell(kind, corners, metrics);
     return metrics.min_altitude;
+}
+
+double min_altitude(const Mesh& mesh, CellId e) {
+    if (mesh.is_polyhedron(e)) {
+        double largest = 0.0;
+        for (int f = 0; f < mesh.num_faces(e); ++f)
+            largest = std::max(largest, rest_area(mesh, {e, f}));
+        return 3.0 * rest_volume(mesh, e) / largest;
+    }
+    std::vector<Vec3> x;
+    for (const VertexId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
+    return min_altitude(mesh.kind(e), x);
+}
+
+ShapeMetrics measure_shapes(const Mesh& mesh) {
+    ShapeMetrics shapes;
+    MeshMetrics metrics;
+    metrics.min_dihedral_angle = std::numbers::pi;
+    std::vector<std::pair<VertexId, VertexId>> edges;
+    std::vector<Vec3> x;
+    for (const CellId e : mesh.elements()) {
+        x.clear();
+        for (const VertexId n : mesh.corners(e)) {
+            x.push_back(mesh.rest_position(n));
+            shapes.box.extend(x.back());
+        }
+        if (!mesh.is_polyhedron(e)) measure_cell(mesh.kind(e), x, metrics);
+        shapes.min_altitude = std::min(shapes.min_altitude, min_altitude(mesh, e));
+        for (int f = 0; f < mesh.num_faces(e); ++f)
+            for (int p = 0; p < mesh.face_size({e, f}); ++p)
+                if (const auto [a, b] = std::pair(
+                        mesh.face_corner({e, f}, p),
+                        mesh.face_corner({e, f}, (p + 1) % mesh.face_size({e, f})));
+                    a < b)
+                    edges.emplace_back(a, b);
+    }
+    shapes.min_dihedral_angle = metrics.min_dihedral_angle;
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    double sum = 0.0;
+    for (const auto& [a, b] : edges)
+        sum += (mesh.rest_position(b) - mesh.rest_position(a)).norm();
+    shapes.mean_edge_length = sum / static_cast<double>(edges.size());
+    return shapes;
 }
 
 MeshMetrics measure(const MeshData& data) {

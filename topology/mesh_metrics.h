@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <span>
 
@@ -43,6 +45,20 @@ double mean_element_length(const Mesh& mesh);
 
 /// Returns MeshMetrics::min_altitude of one cell.
 double min_altitude(CellKind kind, std::span<const Vec3> corners);
+/// Returns likewise that of a cell of a mesh at rest, m. For a polyhedron it is three times the
+/// volume over the area of its largest face.
+double min_altitude(const Mesh& mesh, CellId e);
+
+/// Measures of the shapes of cells and edges of a mesh at rest, as MeshMetrics has them. Polyhedra
+/// have no part in the angles.
+struct ShapeMetrics {
+    Box box;
+    double mean_edge_length = 0.0;
+    double min_altitude = std::numeric_limits<double>::infinity();
+    double min_dihedral_angle = 0.0;
+};
+/// Returns the measures of a mesh. Cost: O(n log n).
+ShapeMetrics measure_shapes(const Mesh& mesh);
 
 /// Returns the measures of a mesh. Throws InputError with the errors of check(). Cost: O(n log n).
 MeshMetrics measure(const MeshData& data);

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "incise/topology/cell_kind.h"
+#include "incise/topology/mesh_data.h"
 
 namespace incise::render {
 
@@ -49,12 +50,32 @@ std::optional<topology::CellKind> kind_of(int vtk_type) {
     }
 }
 
+/// As is_cut(), for a polyhedron. A polygon may be a part of a face.
+bool is_cut_of_polyhedron(vtkUnstructuredGrid& grid, vtkIdType cell, int cut_faces,
+                          const std::vector<vtkIdType>& polygon) {
+    vtkNew<vtkIdList> stream;
+    grid.GetFaceStream(cell, stream);
+    vtkIdType at = 0;
+    const vtkIdType count = stream->GetId(at++);
+    std::vector<vtkIdType> face;
+    for (vtkIdType f = 0; f < std::min<vtkIdType>(count, topology::max_cut_faces); ++f) {
+        face.clear();
+        for (vtkIdType left = stream->GetId(at++); left > 0; --left)
+            face.push_back(stream->GetId(at++));
+        std::sort(face.begin(), face.end());
+        if ((cut_faces >> f & 1) != 0 && std::ranges::includes(face, polygon)) return true;
+    }
+    return false;
+}
+
 /// True if a polygon, of these points in ascending order, is a face of the cell that `cut_faces`
 /// has.
 bool is_cut(vtkUnstructuredGrid& grid, vtkIdType cell, int cut_faces,
             const std::vector<vtkIdType>& polygon) {
+    if (cut_faces == 0) return false;
+    if (grid.GetCellType(cell) == VTK_POLYHEDRON) return is_cut_of_polyhedron(grid, cell, cut_faces, polygon);
     const auto kind = kind_of(grid.GetCellType(cell));
-    if (!kind || cut_faces == 0) return false;
+    if (!kind) return false;
     vtkNew<vtkIdList> corners;
     grid.GetCellPoints(cell, corners);
     const topology::CellTraits& traits = topology::traits(*kind);

@@ -22,7 +22,6 @@
 #include "incise/cutting/exact/recognition.h"
 #include "incise/cutting/exact/separation.h"
 #include "incise/cutting/exact/surface_boundary.h"
-#include "incise/cutting/exact/undividable.h"
 #include "incise/topology/mesh_edit.h"
 
 namespace incise::cutting {
@@ -234,16 +233,6 @@ void Splitter::find_crossed_edges() {
     for (const auto& [e, edge] : edges_of_elements)
         if (is_crossed[edge] && (touched_.empty() || touched_.back() != e)) touched_.push_back(e);
     report_.elements_crossed = touched_.size();
-    for (const CellId e : touched_)
-        if (mesh_.kind(e) != CellKind::tetrahedron) {
-            if (end_) {  // the blade has not come to it: the cut ends as its front
-                touched_.clear();
-                report_ = {};
-                return;
-            }
-            refuse_to_divide(mesh_, e);
-        }
-
     lying_ = NodesOnSurface(surface_, tissue_, edges.entries(), smallest_snap);
     CellId last;
     for (const auto& [e, edge] : edges_of_elements) {

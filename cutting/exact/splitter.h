@@ -37,7 +37,7 @@ namespace incise::cutting {
 /// @param resting       the suspended cuts of other blades. Their fronts follow the divisions, but
 ///                      not yet the copies of nodes: see CutFront::apply(). Faces that come to lie
 ///                      on these cuts behind their blades open, too.
-/// Throws UndividableElement, and changes nothing, if a crossed element is no tetrahedron.
+/// @pre  all elements are tetrahedra
 /// Cost: a few microseconds for each crossed element, and the search. The search looks at what is
 /// near the surface if `tissue` has boxes, else at all elements.
 Split split(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,

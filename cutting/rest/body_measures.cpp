@@ -74,7 +74,7 @@ FragmentCounts counts_of(const Mesh& mesh, const FragmentMesh& fragments) {
 }
 
 BodyMeasures measures_of(const Mesh& mesh, const FragmentMesh& fragments) {
-    const auto metrics = topology::measure(topology::to_mesh_data(mesh, mesh.rest_positions()));
+    const topology::ShapeMetrics metrics = topology::measure_shapes(mesh);
     BodyMeasures body;
     static_cast<FragmentCounts&>(body) = counts_of(mesh, fragments);
     body.elements = mesh.num_elements();
@@ -83,8 +83,8 @@ BodyMeasures measures_of(const Mesh& mesh, const FragmentMesh& fragments) {
     body.min_dihedral_angle = metrics.min_dihedral_angle;
     body.min_altitude = metrics.min_altitude;
     body.mean_edge_length = metrics.mean_edge_length;
-    body.box_min = metrics.box_min;
-    body.box_max = metrics.box_max;
+    body.box_min = metrics.box.min();
+    body.box_max = metrics.box.max();
     if (is_all_tetrahedra(mesh)) body.step_length = step_length_of(fragments);
     return body;
 }

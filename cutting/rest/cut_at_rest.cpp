@@ -12,7 +12,6 @@
 #include "incise/base/error.h"
 #include "incise/cutting/cutter.h"
 #include "incise/cutting/exact/cut_plan.h"
-#include "incise/cutting/exact/undividable.h"
 #include "incise/cutting/surfaces/plane.h"
 #include "incise/cutting/surfaces/triangle_surface.h"
 #include "incise/cutting/tools/separator.h"
@@ -27,14 +26,6 @@ using topology::CellKind;
 using topology::Mesh;
 
 namespace {
-
-/// Returns the volume at rest of an element that is no longer in the mesh, m3.
-double removed_volume(const topology::CellRecord& removed, const Mesh& mesh) {
-    std::array<Vec3, topology::max_corners> x;
-    const std::size_t size = std::size(removed.corners);
-    for (std::size_t k = 0; k < size; ++k) x[k] = mesh.rest_position(removed.corners[k]);
-    return topology::signed_volume(removed.kind, {x.data(), size});
-}
 
 /// The state of a mesh before a split, from which the faces that the split opens are found.
 class FacesBefore {
@@ -55,6 +46,12 @@ class FacesBefore {
     std::vector<FaceId> opened_by(const topology::ChangeSet& changes, const Mesh& mesh) const {
         std::vector<FaceId> opened;
         for (const FaceId f : topology::boundary_faces(mesh)) {
+            if (mesh.is_polyhedron(f.cell)) {  // the corners of its faces on the cut are new
+                bool is_new = mesh.is_on_cut(f);
+                for (int p = 0; p < mesh.face_size(f); ++p)
+                    is_new = is_new && mesh.face_corner(f, p).index() >= num_nodes_;
+                if (is_new) opened.push_back(f);
+            }
             if (mesh.kind(f.cell) != CellKind::tetrahedron) continue;
             CellId root = f.cell;
             while (root.index() >= rows_.size())
@@ -240,7 +237,7 @@ class CountingCutter {
         const auto changes = cutter_.carve(mesh_, removal.shape, pose, pose).changes;
         long double removed = 0.0;
         for (const topology::CellRecord& record : changes.elements_removed)
-            removed += removed_volume(record, mesh_);
+            removed += topology::rest_volume(mesh_, changes, record);
         counts_.volume_removed = static_cast<double>(removed);
         record_changes(changes);
     }
@@ -432,8 +429,6 @@ RestCutReport cut_at_rest(Mesh& mesh, std::span<const RestTool> tools, CutMode m
                 report.warnings.push_back(tool.name + ": " + *complaint);
             add(counts, report.total);
             report.tools.push_back({tool.name, counts, topology::components(mesh).count});
-        } catch (const UndividableElement& error) {
-            throw UndividableElement(tool.name + ": " + error.what(), error.element);
         } catch (const InputError& error) {
             throw InputError(tool.name + ": " + error.what());
         }

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "incise/base/types.h"
-#include "incise/cutting/exact/undividable.h"
 #include "incise/cutting/rest/body_measures.h"
 #include "incise/cutting/tools/tool.h"
 #include "incise/topology/mesh.h"

@@ -81,6 +81,10 @@ void write_mesh(const std::filesystem::path& path, const topology::MeshData& mes
         if (mesh.kinds[c] != topology::CellKind::tetrahedron)
             throw InputError(path.string() + ": the format holds tetrahedra alone, and " +
                              mesh.cell_name(c) + " is none; write .vtu");
+    for (std::size_t c = 0; c < mesh.num_cells() && !format.has_carriers; ++c)
+        if (mesh.kinds[c] == topology::CellKind::polyhedron)
+            throw InputError(path.string() + ": the format has no polyhedra, and " +
+                             mesh.cell_name(c) + " is one, which a cut has made; write .vtu");
     write_file(path, format.text(mesh));
 }
 

@@ -18,6 +18,8 @@ const char* legacy_cell_type(topology::CellKind kind) {
             return "13\n";
         case pyramid:
             return "14\n";
+        case polyhedron:
+            break;
     }
     return "";
 }

@@ -6,6 +6,7 @@
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
+#include <vtkIdTypeArray.h>
 #include <vtkErrorCode.h>
 #include <vtkFieldData.h>
 #include <vtkLZ4DataCompressor.h>
@@ -47,6 +48,8 @@ constexpr unsigned char vtk_cell_type(CellKind kind) {
             return VTK_WEDGE;
         case CellKind::pyramid:
             return VTK_PYRAMID;
+        case CellKind::polyhedron:
+            return VTK_POLYHEDRON;
     }
     return VTK_EMPTY_CELL;
 }
@@ -80,7 +83,17 @@ void set_cells(vtkUnstructuredGrid& grid, const MeshData& mesh) {
     vtkNew<vtkCellArray> cells;
     cells->SetData(copy_as_array<IndexArray>(mesh.offsets),
                    copy_as_array<IndexArray>(mesh.corners));
-    grid.SetCells(copy_as_array<vtkUnsignedCharArray>(types), cells);
+    const auto all_types = copy_as_array<vtkUnsignedCharArray>(types);
+    if (mesh.faces.empty()) {
+        grid.SetCells(all_types, cells);
+        return;
+    }
+    std::vector<std::int64_t> places(mesh.num_cells(), -1);
+    mesh.for_each_polyhedron([&](std::size_t cell, std::size_t first) {
+        places[cell] = static_cast<std::int64_t>(first);
+    });
+    grid.SetCells(all_types, cells, copy_as_array<vtkIdTypeArray>(places),
+                  copy_as_array<vtkIdTypeArray>(mesh.faces));
 }
 
 void add_fields(vtkFieldData& data, std::span<const Field> fields, std::size_t num_tuples,

@@ -119,20 +119,23 @@ FaceSet::FaceSet(std::vector<FaceId> faces) {
 }
 
 void FaceSet::apply(const Mesh& mesh, const ChangeSet& changes) {
-    if (changes.element_capacity_after < changes.element_capacity_before) {
+    if (changes.epoch_after < changes.epoch_before) {
         // The edit is an undo: the parts are removed, and their faces return to the members.
         const CellId end(changes.element_capacity_after);
         while (!members_.empty() && members_.back().face.cell >= end) members_.pop_back();
         for (Member& member : members_)
             if (member.left_to >= end) member.left_to = {};
+        go_back(changes);
         return;
     }
     std::vector<FaceId> born;
+    follow_shapes(mesh, changes, born);
     for (const auto& [e, parts] : parts_by_ancestor(changes)) {
         auto member =
             std::lower_bound(members_.begin(), members_.end(), e,
                              [](const Member& m, CellId element) { return m.face.cell < element; });
         if (member == members_.end() || member->face.cell != e) continue;
+        if (mesh.is_polyhedron(e)) continue;
         Ancestor ancestor(mesh, changes, e);
         for (; member != members_.end() && member->face.cell == e; ++member) {
             if (member->left_to.is_valid()) continue;
@@ -142,9 +145,87 @@ void FaceSet::apply(const Mesh& mesh, const ChangeSet& changes) {
             if (!ancestor.has_in_face(member->face)) member->left_to = parts.front();
         }
     }
-    // New ids are above all others, so that the list stays sorted.
-    std::sort(born.begin(), born.end());
     for (const FaceId f : born) members_.push_back({f, {}});
+    std::ranges::sort(members_, {}, &Member::face);
+}
+
+namespace {
+
+/// Returns the faces that a cell had before an edit, or has after it.
+topology::CellShape shape_of(const Mesh& mesh, const topology::ShapeChange& change, bool is_before) {
+    const topology::CellKind kind = is_before ? change.kind_from : change.kind_to;
+    if (kind == topology::CellKind::polyhedron) return is_before ? change.from : change.to;
+    return mesh.shape_of_row(change.cell, kind);
+}
+
+/// True if all corners of a face are corners of another one, or lie between such.
+bool lies_in(std::span<const VertexId> part, std::span<const VertexId> whole,
+             const ChangeSet& changes) {
+    const auto is_in = [&](const auto& self, VertexId n) -> bool {
+        if (std::ranges::find(whole, n) != whole.end()) return true;
+        if (n.index() < changes.node_capacity_before) return false;
+        const VertexRecord* record = find_record(changes.nodes_added, n);
+        if (!record || record->num_sources == 0) return false;
+        for (int s = 0; s < record->num_sources; ++s)
+            if (!self(self, record->sources[static_cast<std::size_t>(s)].node)) return false;
+        return true;
+    };
+    return std::ranges::all_of(part, [&](VertexId n) { return is_in(is_in, n); });
+}
+
+}  // namespace
+
+// A part of a face has all of its corners in it, and was inside the body if the face was. The
+// members of a cell that changed its faces are found anew, in it and in the parts that it lost.
+void FaceSet::follow_shapes(const Mesh& mesh, const ChangeSet& changes,
+                            std::vector<FaceId>& born) {
+    if (changes.shape_changes.empty()) return;
+    const auto parts = parts_by_ancestor(changes);
+    Replaced replaced{changes.epoch_after, {}};
+    for (const topology::ShapeChange& change : changes.shape_changes) {
+        const CellId e = change.cell;
+        if (e.index() >= changes.element_capacity_before) continue;
+        const auto by_cell = [](const Member& m) { return m.face.cell; };
+        const auto begin = std::ranges::lower_bound(members_, e, {}, by_cell);
+        const auto end = std::ranges::upper_bound(members_, e, {}, by_cell);
+        if (begin == end) continue;
+        const topology::CellShape before = shape_of(mesh, change, true);
+        std::vector<int> faces;
+        for (auto member = begin; member != end; ++member) faces.push_back(member->face.face);
+        replaced.members.insert(replaced.members.end(), begin, end);
+        members_.erase(begin, end);
+        const auto add = [&](CellId cell) {
+            for (int f = 0; f < mesh.num_faces(cell); ++f) {
+                std::vector<VertexId> corners;
+                for (int p = 0; p < mesh.face_size({cell, f}); ++p)
+                    corners.push_back(mesh.face_corner({cell, f}, p));
+                for (const int face : faces)
+                    if (before.is_inside(face) == mesh.was_inside({cell, f}) &&
+                        lies_in(corners, before.face(face), changes)) {
+                        born.push_back({cell, f});
+                        break;
+                    }
+            }
+        };
+        add(e);
+        if (const auto it = parts.find(e); it != parts.end())
+            for (const CellId part : it->second) add(part);
+    }
+    if (!replaced.members.empty()) replaced_.push_back(std::move(replaced));
+}
+
+/// Takes back what follow_shapes() did for an edit.
+void FaceSet::go_back(const ChangeSet& changes) {
+    if (replaced_.empty() || replaced_.back().epoch != changes.epoch_before) return;
+    const std::vector<Member> before = std::move(replaced_.back().members);
+    replaced_.pop_back();
+    std::erase_if(members_, [&](const Member& member) {
+        return std::ranges::any_of(before, [&](const Member& old) {
+            return old.face.cell == member.face.cell;
+        });
+    });
+    members_.insert(members_.end(), before.begin(), before.end());
+    std::ranges::sort(members_, {}, &Member::face);
 }
 
 // Members may have ids above those of the mesh; their users skip them.

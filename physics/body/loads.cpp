@@ -7,6 +7,7 @@
 #include <map>
 
 #include "incise/base/error.h"
+#include "incise/topology/face_triangles.h"
 
 namespace incise::physics {
 
@@ -17,22 +18,37 @@ bool is_on_boundary(const topology::Mesh& mesh, FaceId f) {
            !mesh.neighbor(f).is_valid();
 }
 
-/// Returns a face of a cell, in the fragment that carries the cell.
-PressedFace face_in_fragment(const BodyView& body, FaceId f) {
-    const ElementId fragment = body.fragments.fragment_of_cell(f.cell);
+/// Returns some corners of a cell as a face, in the fragment that carries the cell.
+PressedFace face_in_fragment(const BodyView& body, CellId cell, std::span<const VertexId> corners) {
+    const ElementId fragment = body.fragments.fragment_of_cell(cell);
     PressedFace face;
-    face.num_corners = static_cast<std::size_t>(body.mesh.face_size(f));
+    face.num_corners = corners.size();
     for (std::size_t p = 0; p < face.num_corners; ++p)
-        face.corners[p] = body.fragments.embedded(
-            fragment, body.mesh.rest_position(body.mesh.face_corner(f, static_cast<int>(p))));
+        face.corners[p] = body.fragments.embedded(fragment, body.mesh.rest_position(corners[p]));
     return face;
 }
 
-/// Calls visit(face) for the members that carry a load: whole faces that are on the boundary.
+/// Calls visit(face) for the members that carry a load: whole faces that are on the boundary. Those
+/// of polyhedra come in triangles.
 template <class Visit>
-void for_loaded(const FaceSet& faces, const topology::Mesh& mesh, Visit visit) {
-    for (const FaceSet::Member& member : faces.members())
-        if (!member.left_to.is_valid() && is_on_boundary(mesh, member.face)) visit(member.face);
+void for_loaded(const FaceSet& faces, const BodyView& body, Visit visit) {
+    const topology::Mesh& mesh = body.mesh;
+    for (const FaceSet::Member& member : faces.members()) {
+        const FaceId f = member.face;
+        if (member.left_to.is_valid() || !is_on_boundary(mesh, f)) continue;
+        if (mesh.is_polyhedron(f.cell)) {
+            topology::for_each_triangle(mesh, f, [&](VertexId a, VertexId b, VertexId c) {
+                visit(face_in_fragment(body, f.cell, std::array{a, b, c}));
+            });
+            continue;
+        }
+        std::array<VertexId, topology::max_face_corners> corners;
+        const int size = mesh.face_size(f);
+        for (int p = 0; p < size; ++p)
+            corners[static_cast<std::size_t>(p)] = mesh.face_corner(f, p);
+        visit(face_in_fragment(body, f.cell,
+                               std::span(corners).first(static_cast<std::size_t>(size))));
+    }
 }
 
 /// Sums of shares by node, in the order in which the shares are added.
@@ -79,8 +95,7 @@ struct ShareFinder {
     }
     std::vector<NodalContribution> operator()(const TractionLoad& load) const {
         ShareSums shares;
-        for_loaded(load.faces, body.mesh, [&](FaceId f) {
-            const PressedFace face = face_in_fragment(body, f);
+        for_loaded(load.faces, body, [&](const PressedFace& face) {
             const double area = face.area_vector(body.fragments.rest_positions()).norm();
             for (std::size_t p = 0; p < face.num_corners; ++p)
                 shares.add(face.corners[p], area / static_cast<double>(face.num_corners));
@@ -123,7 +138,7 @@ struct ForcePerShare {
 
 std::vector<PressedFace> pressed_faces(const FaceSet& faces, const BodyView& body) {
     std::vector<PressedFace> pressed;
-    for_loaded(faces, body.mesh, [&](FaceId f) { pressed.push_back(face_in_fragment(body, f)); });
+    for_loaded(faces, body, [&](const PressedFace& face) { pressed.push_back(face); });
     return pressed;
 }
 
@@ -149,8 +164,8 @@ std::span<const Entry> entries_of(const std::vector<Entry>& entries, NodeRange r
     return {begin, std::lower_bound(begin, entries.end(), range.end, is_before)};
 }
 
-/// A tangent of up to four nodes, N/m.
-constexpr int most_rows = 12;
+/// A tangent of the nodes of a face or of an element, N/m.
+constexpr int most_rows = 3 * topology::max_corners;
 using FaceTangent =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most_rows, most_rows>;
 
@@ -177,7 +192,7 @@ FaceTangent tangent_of(const PressedFace& face, double pressure, std::span<const
 /// Passes the tangent of a pressure on one face by the positions of the nodes of its fragment.
 void visit_tangent(const PressedFace& face, double pressure, std::span<const Vec3> x,
                    TangentSink& sink) {
-    std::array<std::uint32_t, 4> nodes;  // of the face, or of the tetrahedron
+    std::array<std::uint32_t, topology::max_corners> nodes;  // of the face, or of the element
     std::size_t num_nodes = 0;
     FaceTangent weights = FaceTangent::Zero(most_rows, most_rows);  // of corner p, in column 3 p
     for (std::size_t p = 0; p < face.num_corners; ++p)

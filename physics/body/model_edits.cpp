@@ -56,6 +56,17 @@ std::vector<Node> touched_nodes(const Mesh& mesh, const MeshChanges<Node, Elemen
     return touched;
 }
 
+/// Returns the vertices at cells that an edit has changed, in ascending order.
+std::vector<VertexId> touched_vertices(const topology::Mesh& mesh, const ChangeSet& changes) {
+    std::vector<VertexId> touched = touched_nodes(mesh, changes);
+    if (changes.shape_changes.empty()) return touched;
+    for (const topology::ShapeChange& change : changes.shape_changes)
+        if (change.cell.index() < mesh.element_capacity())
+            std::ranges::copy(mesh.corners(change.cell), std::back_inserter(touched));
+    make_sorted_set(touched);
+    return touched;
+}
+
 /// Returns the nodes of the fragments whose mass or stiffness an edit may have changed, in
 /// ascending order.
 std::vector<NodeId> touched_nodes(const FragmentMesh& fragments, const FragmentChanges& changes) {
@@ -77,7 +88,7 @@ BodyEdit Model::apply(const topology::Mesh& mesh, const ChangeSet& changes) {
     topology::FollowedEpoch(fragments().epoch()).advance(mesh, changes, "model");
     const Momenta removed = momenta_of_removed(changes);
     BodyEdit edit{
-        changes, structure_.fragments_.apply(mesh, changes), {}, touched_nodes(mesh, changes), {}};
+        changes, structure_.fragments_.apply(mesh, changes), {}, touched_vertices(mesh, changes), {}};
     edit.touched_nodes = touched_nodes(fragments(), edit.physics);
     const bool keeps_momenta = edit.physics.has_joins();
     const Momenta before = keeps_momenta ? momenta_of(edit.touched_nodes) - removed : Momenta();
@@ -128,11 +139,8 @@ Momenta Model::momenta_of(std::span<const NodeId> nodes) const {
 /// about the origin.
 Momenta Model::momenta_of_removed(const ChangeSet& changes) const {
     std::map<CellId, double> volumes;  // removed, m3, by cell before the edit
-    std::vector<Vec3> x;
     const auto volume_of = [&](const topology::CellRecord& record) {
-        x.clear();
-        for (const VertexId n : record.corners) x.push_back(mesh().rest_position(n));
-        return topology::signed_volume(record.kind, x);
+        return topology::rest_volume(mesh(), changes, record);
     };
     for (const auto& record : changes.elements_removed) volumes[record.id] = volume_of(record);
     // Parts of an element that was divided before it was removed are still there.

@@ -71,6 +71,7 @@ std::optional<std::string> why_no_centre_cell(const FragmentMesh& fragments, Ele
         case CellKind::pyramid:
             return why_no_centre_cell_of<CellKind::pyramid>(fragments, e);
         case CellKind::tetrahedron:
+        case CellKind::polyhedron:
             break;
     }
     return {};
@@ -104,6 +105,7 @@ std::size_t history_size(const Material& material, CellKind kind) {
         case CellKind::pyramid:
             return CentreViscousKernel<CellKind::pyramid>::history_size(num_terms);
         case CellKind::tetrahedron:
+        case CellKind::polyhedron:
             break;
     }
     return links->prony_rule == PronyRule::nodal ? NodalViscousKernel::history_size(num_terms)

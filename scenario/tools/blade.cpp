@@ -33,7 +33,6 @@ class BladeKind final : public ToolKind {
         blade.edge = read_line(tool, "edge");
         const auto mode = tool.has("mode") ? tool.choice("mode", {modes}) : std::nullopt;
         if (mode) blade.mode = static_cast<CutMode>(*mode);
-        spec.has_usual_mode = !mode;
         blade.toughness = tool.number("toughness", 0.0, limits::positive);
         if (const auto force = tool.choice("cutting_force", {cutting_forces}))
             blade.cutting_force = static_cast<cutting::CuttingForce>(*force);

@@ -66,7 +66,7 @@ double way_of(World& world, const cutting::Suture& suture) {
         const auto rest = world.mesh().rest_positions();
         points.push_back(topology::find_point(world.mesh(), rest, x, 1e-9)
                              .value()
-                             .position(world.mesh(), world.positions()));
+                             .position(world.positions()));
     }
     for (std::size_t i = 1; i < points.size(); ++i) sum += (points[i] - points[i - 1]).norm();
     return sum;
