@@ -126,11 +126,10 @@ std::string remedy_for_coincidence(const MeshData& data, const WeldAdvice& advic
     const bool is_of_use = outlook.num_idle < outlook.num_joined;
     std::string obstacle = "no faces there have the same corners";
     if (const auto& unlike = outlook.unlike_faces)
-        obstacle += ", such as the quadrilateral of " + data.cell_name(unlike->first) +
-                    " and the triangles on it, one of " + data.cell_name(unlike->second);
+        obstacle += ", such as " + name_of(*unlike, data);
     if (!is_of_use)
         return "welding does not join the cells, since " + obstacle + ": " +
-               (outlook.unlike_faces ? "use one kind of element"
+               (outlook.unlike_faces ? remedy_for_unlike_faces
                                      : "let the meshes match where they meet") +
                or_apart;
     std::string text = advice.join;
