@@ -16,6 +16,7 @@
 #include "incise/io/image/label_image.h"
 #include "incise/io/mesh/mesh_reader.h"
 #include "incise/io/surface/surface_reader.h"
+#include "incise/scenario/distorted_cells.h"
 #include "incise/scenario/remedies.h"
 #include "incise/scenario/scenario_reader.h"
 #include "incise/topology/mesh.h"
@@ -45,8 +46,10 @@ Findings check_mesh(const std::filesystem::path& path, const MeshInput& input) {
         for (const auto& warning : file.warnings) findings.warnings.push_back(prefix + warning);
         auto found = topology::check(file.mesh, scenario::weld_advice());
         // Warnings about connections exist only after the mesh is built.
-        if (found.errors.empty())
+        if (found.errors.empty()) {
+            found.errors = scenario::distorted_cells(file.mesh);
             found.warnings = topology::Mesh::build(file.mesh, scenario::weld_advice()).warnings;
+        }
         for (const auto& warning : found.warnings) findings.warnings.push_back(prefix + warning);
         for (const auto& error : found.errors) findings.errors.push_back(prefix + error);
         const std::set<int> regions(file.mesh.regions.begin(), file.mesh.regions.end());

@@ -30,7 +30,8 @@ using topology::MeshData;
 void append_cells(MeshData& mesh, const py::handle& cells, const std::optional<Integers>& regions,
                   const std::string& name, std::optional<CellKind> kind) {
     const Integers corners = integers_from(cells, name);
-    if (corners.ndim() != 2) throw InputError(name + " must have the shape (M, 4) or (M, 8)");
+    if (corners.ndim() != 2)
+        throw InputError(name + " must have the shape (M, 4), (M, 5), (M, 6) or (M, 8)");
     if (!kind)
         for (std::size_t k = 0; k < topology::num_cell_kinds; ++k)
             if (topology::cell_traits[k].num_corners == corners.shape(1))
@@ -208,8 +209,9 @@ origin: the lowest corner.)")
             "The points at rest, shape (N, 3), a copy.")
         .def_property_readonly(
             "cells", held(&cells_of),
-            "Whole numbers, rows of points: shape (M, 4) or (M, 8), a copy. Of several kinds a\n"
-            "dict of such arrays with the keys tetrahedron, hexahedron, wedge and pyramid.")
+            "Whole numbers, rows of points: shape (M, 4), (M, 5), (M, 6) or (M, 8), a copy. Of\n"
+            "several kinds a dict of such arrays with the keys tetrahedron, hexahedron, wedge and\n"
+            "pyramid.")
         .def_property_readonly(
             "regions", held(&regions_of),
             "The region of each cell, shape (M,), a copy; a dict if cells is one.")

@@ -209,7 +209,7 @@ Raises InputError with all faults of scenario and mesh. What is unusual becomes 
             "frame: its number in the mesh file, or a new one. int64, shape (N,), a copy.")
         .def_property_readonly(
             "cells", &cells,
-            "The elements as rows of positions, in the order of VTK: int64, shape (M, 4) or (M, "
+            "The elements as rows of positions, in the order of VTK: int64, shape (M, 4) to (M, "
             "8),\n"
             "a read-only copy. Of a mixed mesh a dict of such arrays by kind: tetrahedron,\n"
             "hexahedron, wedge, pyramid. The same object until the topology_version changes.")

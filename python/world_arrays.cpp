@@ -306,7 +306,7 @@ The arrays are read-only copies: they are valid for ever, and show the world as 
                                "The mass that each of them carries, kg. Shape (P,).")
         .def_property_readonly(
             "cells", held(&Physics::cells),
-            "The fragments as rows of positions, shape (F, 4) or (F, 8); a dict of such arrays by\n"
+            "The fragments as rows of positions, shape (F, 4) to (F, 8); a dict of such arrays by\n"
             "kind in a mixed mesh. A fragment has the corners of the whole element that it is a\n"
             "part of, so that those of a cut element overlap.")
         .def_property_readonly(

@@ -41,15 +41,9 @@ sim::ToolId WorldDriver::add_tool(const std::string& name, const scenario::Value
     if (world_.find_tool(name))
         throw InputError("tool '" + name + "': the world has a tool of this name already");
     if (pose) require_sound("tool '" + name + "'", *pose);
-    scenario::HandTool held = [&] {
-        try {
-            return scenario::build_hand_tool(
-                definition, scenario_.folder, world_.mesh(),
-                scenario::why_no_contact(scenario_.dynamics, scenario_.contact));
-        } catch (const InputError& error) {
-            throw InputError("tool '" + name + "': " + error.what());
-        }
-    }();
+    scenario::HandTool held =
+        scenario::build_hand_tool(name, definition, scenario_.folder, world_.mesh(),
+                                  scenario::why_no_contact(scenario_.dynamics, scenario_.contact));
     if (pose && !cutting::traits_of(held.shape).has_pose)
         throw InputError("tool '" + name + "': a suture has no pose: its points are in the tissue");
     const bool is_cut = cutting::traits_of(held.shape).is_at_once;

@@ -8,6 +8,7 @@
 
 #include "incise/fragments/carriers.h"
 #include "incise/physics/body/body_arrays.h"
+#include "incise/topology/face_triangles.h"
 
 namespace incise::runner {
 

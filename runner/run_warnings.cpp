@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/runner/run_warnings.h"
 
+#include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "incise/base/number_format.h"
@@ -17,6 +19,7 @@ RunWarnings::RunWarnings(const sim::World& world, const scenario::DynamicsSpec& 
 
 void RunWarnings::add_step(const sim::World& world, std::vector<std::string>& warnings) {
     for (const sim::Edit& edit : world.report().edits) add_short_step(world, edit.record, warnings);
+    add_stiffening(world, warnings);
     const double depth = world.report().contact.max_penetration;
     if (depth > overlap_.depth) overlap_ = {depth, world.time()};
 }
@@ -35,6 +38,47 @@ void RunWarnings::add_short_step(const sim::World& world, const sim::EditRecord&
         text << "; " << scenario::for_longer_steps(world.tool(*tool).shape);
     warnings.push_back(text.str());
     warned_step_ = now;
+}
+
+namespace {
+
+/// Returns the element with the shortest stable step in the present strain.
+ElementId limiting_element(const physics::Model& model) {
+    ElementId limiting;
+    double shortest = std::numeric_limits<double>::infinity();
+    const physics::Structure& structure = model.structure();
+    for (const ElementId e : model.fragments().elements()) {
+        const double stiffening =
+            structure.elements().block_of(model.fragments(), e).stiffening(e, model.positions());
+        const double step = structure.element_stable_step(e) / std::sqrt(stiffening);
+        if (limiting.is_valid() && !(step < shortest)) continue;
+        limiting = e;
+        shortest = step;
+    }
+    return limiting;
+}
+
+}  // namespace
+
+void RunWarnings::add_stiffening(const sim::World& world, std::vector<std::string>& warnings) {
+    constexpr double much_shorter = 0.01;
+    const double at_rest = world.rest_stable_step(), now = world.stable_step();
+    if (!has_stable_step_ || has_told_stiffening_ || !(now < much_shorter * at_rest)) return;
+    has_told_stiffening_ = true;
+    const physics::Model& model = world.model();
+    const ElementId e = limiting_element(model);
+    if (!e.is_valid()) return;
+    std::ostringstream text;
+    text.precision(3);
+    text << "at t = " << world.time() << " s, strain has made tissue so stiff that the stable step "
+         << "fell from " << at_rest << " s at rest to " << now << " s: the run takes "
+         << at_rest / now << " times as long while this lasts; most strained is element "
+         << world.mesh().label(model.fragments().cells_of(e).front()) << ", of region "
+         << model.fragments().region(e) << ", with a volume ratio J of "
+         << model.element_result(e).volume_ratio
+         << "; let tools, obstacles and constraints press it less far, use a finer mesh there, or "
+            "a law that stiffens less, such as \"stable-neo-hookean\"";
+    warnings.push_back(text.str());
 }
 
 void RunWarnings::add_end(const sim::World& world, std::vector<std::string>& warnings) {

@@ -12,15 +12,17 @@
 
 namespace incise::runner {
 
-/// Finds what has gone wrong in a world though each step succeeded: edits that make steps short,
-/// surfaces that overlap, and elements that were crushed or wound up.
+/// Finds what has gone wrong in a world though each step succeeded: edits and strain that make
+/// steps short, surfaces that overlap, and elements that were crushed or wound up.
 class RunWarnings {
   public:
     /// @param world  at its start
     RunWarnings(const sim::World& world, const scenario::DynamicsSpec& dynamics);
 
     /// Looks at the last step. Warns of each edit after which the stable step is below a tenth of
-    /// that at the start or at the last such warning.
+    /// that at the start or at the last such warning. Warns once if strain has made the stable step
+    /// shorter than a hundredth of that at rest.
+    /// Cost: O(#elements) in the step of the second warning.
     void add_step(const sim::World& world, std::vector<std::string>& warnings);
     /// Warns of lost elements, and of the largest overlap so far, at the end of a run.
     /// Cost: O(#elements).
@@ -34,12 +36,13 @@ class RunWarnings {
 
     static void archive(auto& ar, auto& self) {
         ar(self.overlap_, self.warned_step_, self.next_look_, self.has_told_loss_,
-           self.has_told_overlap_);
+           self.has_told_overlap_, self.has_told_stiffening_);
     }
 
   private:
     void add_short_step(const sim::World& world, const sim::EditRecord& edit,
                         std::vector<std::string>& warnings);
+    void add_stiffening(const sim::World& world, std::vector<std::string>& warnings);
     bool has_large_overlap() const;
     void add_overlap(std::vector<std::string>& warnings);
     bool add_loss(const sim::World& world, const std::string& when,
@@ -55,7 +58,7 @@ class RunWarnings {
     double warned_step_;  // s, stable step at the last warning about it, or at the start
     double size_;         // m, mean length of an element at the start
     std::uint64_t next_look_ = 0;
-    bool has_told_loss_ = false, has_told_overlap_ = false;
+    bool has_told_loss_ = false, has_told_overlap_ = false, has_told_stiffening_ = false;
 };
 
 }  // namespace incise::runner

@@ -197,15 +197,21 @@ physics::BoundaryConditions build_boundary_conditions(const Scenario& scenario,
 
 namespace {
 
-/// Returns the location of the material of a region, or an empty text if there is none.
-std::string location_of_material(const Scenario& scenario, int region) {
+/// Returns the material of a region, or null if there is none.
+const MaterialSpec* material_of(const Scenario& scenario, int region) {
     const MaterialSpec* found = nullptr;
     for (const MaterialSpec& spec : scenario.materials) {
         const bool names_it =
             spec.regions && std::ranges::find(*spec.regions, region) != spec.regions->end();
         if (names_it || (!spec.regions && !found)) found = &spec;
     }
-    return found ? found->location : "";
+    return found;
+}
+
+/// Returns the error about a material that does not suit an element, with its remedy.
+BodyError with_remedy(const Scenario& scenario, const physics::UnsuitableMaterial& error) {
+    const MaterialSpec* material = material_of(scenario, error.region);
+    return {material ? material->location : "", error.what() + remedy_for(error, material)};
 }
 
 /// Returns the warning about a tool that touches nothing at rest. The usual cause is a wrong
@@ -225,10 +231,6 @@ std::vector<ScriptedTool> build_tools(const Scenario& scenario, const topology::
     Box body;
     if (mesh)
         for (const Vec3& x : mesh->rest_positions()) body.extend(x);
-    // If the end is not known, all keys are checked.
-    const double end_time = scenario.dynamics.end_time > 0.0
-                                ? scenario.dynamics.end_time
-                                : std::numeric_limits<double>::infinity();
     std::vector<ScriptedTool> tools;
     std::vector<std::string> idle;
     for (ToolSpec spec : scenario.tools) {
@@ -350,8 +352,7 @@ physics::Model make_model(const Scenario& scenario, const topology::Mesh& mesh,
     try {
         return physics::Model(mesh, materials, boundary_conditions);
     } catch (const physics::UnsuitableMaterial& error) {
-        throw BodyError(location_of_material(scenario, error.region),
-                        error.what() + remedy_for(error));
+        throw with_remedy(scenario, error);
     }
 }
 
@@ -377,8 +378,7 @@ sim::World make_world(const Scenario& scenario, topology::Mesh mesh,
         warn_of_costly_elements(scenario, world.model(), warnings);
         return world;
     } catch (const physics::UnsuitableMaterial& error) {
-        throw BodyError(location_of_material(scenario, error.region),
-                        error.what() + remedy_for(error));
+        throw with_remedy(scenario, error);
     }
 }
 

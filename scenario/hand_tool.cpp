@@ -9,16 +9,22 @@
 
 namespace incise::scenario {
 
-HandTool build_hand_tool(const Value& definition, const std::filesystem::path& folder,
-                         const topology::Mesh& mesh, const std::string& why_no_contact) {
+HandTool build_hand_tool(const std::string& name, const Value& definition,
+                         const std::filesystem::path& folder, const topology::Mesh& mesh,
+                         const std::string& why_no_contact) {
+    const std::string what = "tool '" + name + "'";
     HandTool tool;
     ToolSpec spec =
-        read_definition(definition, "tool", "kind = \"blade\"", tool.warnings,
+        read_definition(definition, what, "kind = \"blade\"", tool.warnings,
                         [&](const Table& table, Diagnostics& diagnostics) {
                             return read_hand_tool(table, folder, why_no_contact, diagnostics);
                         });
-    tool.kind = spec.name;
-    tool.shape = build_tool(spec, tool.warnings).shape;
+    tool.kind = std::exchange(spec.name, name);
+    try {
+        tool.shape = build_tool(spec, tool.warnings).shape;
+    } catch (const InputError& error) {  // about the file of a surface
+        throw InputError(what + ": " + error.what());
+    }
     return tool;
 }
 

@@ -15,12 +15,13 @@ std::string linear_advice() {
            "with 'linear = true' in [mesh] of a scenario";
 }
 
-std::string remedy_for(const physics::UnsuitableMaterial& misfit) {
+std::string remedy_for(const physics::UnsuitableMaterial& misfit, const MaterialSpec* material) {
     switch (misfit.cause) {
         using enum physics::MaterialMisfit;
         case needs_tetrahedra:
-            return ": give the region a material with method = \"heml\", and without "
-                   "prony_rule = \"nodal\"";
+            if (material && material->method == Method::heml)
+                return ": leave out prony_rule = \"nodal\"";
+            return ": give the region a material with method = \"heml\"";
         case needs_hexahedra:
             return ": give the region a material with method = \"heml\"";
         case needs_cubes:

@@ -6,6 +6,7 @@
 
 #include "incise/physics/body/motion_failure.h"
 #include "incise/physics/elements/element_store.h"
+#include "incise/scenario/scenario.h"
 #include "incise/topology/mesh_data.h"
 
 namespace incise::scenario {
@@ -17,7 +18,8 @@ topology::WeldAdvice weld_advice();
 std::string linear_advice();
 
 /// Returns the end of the message of a material that does not suit an element.
-std::string remedy_for(const physics::UnsuitableMaterial& misfit);
+/// @param material  as the scenario gives it; null if it gives none
+std::string remedy_for(const physics::UnsuitableMaterial& misfit, const MaterialSpec* material);
 
 /// Returns the end of the message of a failure: what the user can change in the scenario.
 std::string remedy_for(const physics::MotionFailure& failure);

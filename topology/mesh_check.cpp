@@ -6,9 +6,13 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
+#include <span>
 #include <sstream>
 
 #include "incise/topology/carrier_check.h"
+#include "incise/topology/cell_advice.h"
+#include "incise/topology/corner_check.h"
 #include "incise/topology/flat_cell.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh_repair.h"
@@ -21,6 +25,12 @@ namespace {
 class Complaints {
   public:
     explicit Complaints(std::vector<std::string>& lines) : lines_(lines) {}
+
+    /// True if the next error of the kind will be listed, and not only counted.
+    bool lists_next(const char* kind) const {
+        const auto it = counts_.find(kind);
+        return it == counts_.end() || it->second < max_listed;
+    }
 
     template <class... Parts>
     void add(const char* kind, const Parts&... parts) {
@@ -86,6 +96,23 @@ std::string fault_of_lists(const MeshData& data) {
     return "";
 }
 
+/// Returns the advice for a cell with a repeated corner: to write it as the kind that it is.
+std::string advice_of_collapsed(const MeshData& data, std::size_t c) {
+    const auto cell = collapsed_cell(data.kinds[c], data.cell(c));
+    if (!cell) return "; remove the cell";
+    const bool is_numbered_in_file = !data.source_points.empty();
+    std::string points;
+    for (const std::int64_t p : cell->corners) {
+        const auto point = static_cast<std::size_t>(p);
+        points += (points.empty() ? "" : ", ") +
+                  std::to_string(is_numbered_in_file ? data.source_points[point] : p);
+    }
+    const std::string name = traits(cell->kind).name;
+    return ", so that it is a " + name + ": write it as a " + name + " of the points " + points +
+           (is_numbered_in_file ? " of the file" : "") + ", in VTK's order";
+}
+
+/// Returns false if it complains, or if a point of the cell is not finite.
 bool corners_are_usable(const MeshData& data, std::size_t c, Complaints& complaints) {
     const auto corners = data.cell(c);
     const auto num_points = static_cast<std::int64_t>(data.points.size());
@@ -98,10 +125,12 @@ bool corners_are_usable(const MeshData& data, std::size_t c, Complaints& complai
         }
         for (std::size_t j = 0; j < k; ++j)
             if (corners[j] == corners[k]) {
-                complaints.add("cells with a repeated corner", data.cell_name(c), ": ",
+                constexpr const char* repeated = "cells with a repeated corner";
+                complaints.add(repeated, data.cell_name(c), ": ",
                                data.point_name(static_cast<std::size_t>(corners[k])),
                                " stands at two of its corners",
-                               data.welded_to.empty() ? "" : " after welding", "; remove the cell");
+                               data.welded_to.empty() ? "" : " after welding",
+                               complaints.lists_next(repeated) ? advice_of_collapsed(data, c) : "");
                 return false;
             }
     }
@@ -111,49 +140,20 @@ bool corners_are_usable(const MeshData& data, std::size_t c, Complaints& complai
     return true;
 }
 
-/// The corners at the other ends of the three edges of a corner, in an order in which they span
-/// positive volume where the element is not turned inside out.
-/// @pre the corner has three edges
-std::array<int, 3> edges_at_corner(const CellTraits& t, int corner) {
-    // In each of the three faces at the corner, `next` is the corner after it and `previous` the
-    // corner before it. Each edge at the corner is in two of these faces.
-    std::array<int, 3> next{}, previous{};
-    std::size_t found = 0;
-    for (int f = 0; f < t.num_faces; ++f) {
-        const auto face = t.face(f);
-        for (std::size_t p = 0; p < face.size(); ++p)
-            if (face[p] == corner) {
-                next[found] = face[(p + 1) % face.size()];
-                previous[found] = face[(p + face.size() - 1) % face.size()];
-                ++found;
-            }
-    }
-    // The first face has two of the three edges. The third edge is the one of the second face that
-    // the first face does not have.
-    const bool shares_next = next[1] == next[0] || next[1] == previous[0];
-    return {previous[0], next[0], shares_next ? previous[1] : next[1]};
+/// Returns the advice for a cell whose corners are in a wrong order, or nothing if no order is
+/// known that makes it sound.
+std::optional<std::string> advice_of_order(CellKind kind, std::span<const Vec3> x) {
+    const auto order = sound_order(kind, x);
+    if (!order) return std::nullopt;
+    std::string text = "take them in the order ";
+    for (std::size_t k = 0; k < x.size(); ++k)
+        text += (k == 0 ? "" : ", ") + std::to_string((*order)[k]);
+    return text + " (counted from 0)";
 }
 
-/// At a corner with three edges, the tetrahedron of these edges must have positive volume.
-void check_corners(const MeshData& data, std::size_t c, std::span<const Vec3> x,
-                   Complaints& complaints) {
-    const CellKind kind = data.kinds[c];
-    const CellTraits& t = traits(kind);
-    for (int k = 0; k < t.num_corners; ++k) {
-        if (kind == CellKind::pyramid && k == 4) continue;  // the apex has four edges
-        const auto [from, along, third] = edges_at_corner(t, k);
-        const Vec3& o = x[static_cast<std::size_t>(k)];
-        const auto edge = [&](int to) -> Vec3 { return x[static_cast<std::size_t>(to)] - o; };
-        if (edge(from).cross(edge(along)).dot(edge(third)) > 0.0) continue;
-        const auto point = data.cell(c)[static_cast<std::size_t>(k)];
-        complaints.add("cells with a corner turned inside out", data.cell_name(c),
-                       " is turned inside out or flat at its corner ", k, ", ",
-                       data.point_name(static_cast<std::size_t>(point)), "; remesh it");
-        return;
-    }
-}
-
-void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
+/// Returns false if it complains: the cell has no positive volume, or is turned inside out at a
+/// corner.
+bool check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
     std::array<Vec3, max_corners> all;
     const auto corners = data.cell(c);
     const std::span<Vec3> x(all.data(), corners.size());
@@ -164,19 +164,38 @@ void check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
     if (!std::isfinite(volume)) {
         complaints.add("cells of no finite volume", data.cell_name(c),
                        " has no finite volume; its coordinates are too large: scale the mesh");
-    } else if (volume < 0.0 && is_flat_to_rounding(kind, x, volume)) {
+        return false;
+    }
+    const bool is_tetrahedron = kind == CellKind::tetrahedron;
+    const auto inverted = is_tetrahedron ? std::nullopt : first_inverted_corner(kind, x);
+    if (volume > 0.0 && !inverted) return true;
+    if (const auto advice = advice_of_order(kind, x)) {
+        if (volume < 0.0)
+            complaints.add("cells without positive volume", data.cell_name(c),
+                           " has negative volume ", volume,
+                           "; its corners run the wrong way round: ", *advice);
+        else
+            complaints.add("cells with corners in a wrong order", data.cell_name(c),
+                           " has its corners in a wrong order: ", *advice);
+    } else if (volume == 0.0) {
+        complaints.add("cells without positive volume", data.cell_name(c),
+                       " has zero volume; remove it or remesh");
+    } else if (is_flat_to_rounding(kind, x, volume)) {
         complaints.add("cells without positive volume", data.cell_name(c),
                        " is flat: its volume of ", volume,
                        " is nothing but rounding; remove it or remesh");
     } else if (volume < 0.0) {
         complaints.add("cells without positive volume", data.cell_name(c), " has negative volume ",
-                       volume, "; its corners run the wrong way round: reverse their order");
-    } else if (volume == 0.0) {
-        complaints.add("cells without positive volume", data.cell_name(c),
-                       " has zero volume; remove it or remesh");
-    } else if (kind != CellKind::tetrahedron) {
-        check_corners(data, c, x, complaints);
+                       volume,
+                       "; it is distorted, or its corners are in no usual order: remesh it, or "
+                       "compare their order with that of VTK");
+    } else {
+        const auto point = corners[static_cast<std::size_t>(*inverted)];
+        complaints.add("cells with a corner turned inside out", data.cell_name(c),
+                       " is turned inside out or flat at its corner ", *inverted, ", ",
+                       data.point_name(static_cast<std::size_t>(point)), "; remesh it");
     }
+    return false;
 }
 
 /// A face with its points in descending order, for the search of equal faces.
@@ -251,7 +270,9 @@ bool same_points(const MeshData& data, std::size_t a, std::size_t b) {
     return x == y;
 }
 
-void check_pair(const MeshData& data, SourceFace a, SourceFace b, MeshCheck& result,
+/// @param are_sound  false if one of the cells is turned inside out. That it lies on the wrong side
+///                   of its neighbours follows from that, and is no error of its own.
+void check_pair(const MeshData& data, SourceFace a, SourceFace b, bool are_sound, MeshCheck& result,
                 Complaints& complaints) {
     if (same_points(data, a.cell, b.cell)) {
         if (a.face == 0)  // one report for each pair of cells, not for each face
@@ -270,6 +291,8 @@ void check_pair(const MeshData& data, SourceFace a, SourceFace b, MeshCheck& res
     }
     if (opposite)
         result.shared_faces.push_back({a, b, static_cast<int>(shift)});
+    else if (!are_sound)
+        return;
     else if (parallel)
         complaints.add("overlapping neighbours", data.cell_name(a.cell), " and ",
                        data.cell_name(b.cell),
@@ -298,13 +321,13 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
     }
 
     std::vector<std::uint8_t> used(data.points.size(), 0);
-    std::vector<std::uint8_t> usable(data.num_cells(), 0);
+    std::vector<std::uint8_t> usable(data.num_cells(), 0), sound(data.num_cells(), 0);
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
         for (const std::int64_t p : data.cell(c))
             if (p >= 0 && p < static_cast<std::int64_t>(used.size()))
                 used[static_cast<std::size_t>(p)] = 1;
         usable[c] = corners_are_usable(data, c, errors);
-        if (usable[c]) check_volume(data, c, errors);
+        sound[c] = usable[c] && check_volume(data, c, errors);
     }
     for (std::size_t p = 0; p < data.points.size(); ++p) {
         if (used[p] && !data.points[p].allFinite())
@@ -319,7 +342,10 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
     for (std::size_t i = 0; i < faces.size();) {
         std::size_t end = i + 1;
         while (end < faces.size() && faces[end].points == faces[i].points) ++end;
-        if (end - i == 2) check_pair(data, faces[i].face, faces[i + 1].face, result, errors);
+        if (end - i == 2) {
+            const SourceFace a = faces[i].face, b = faces[i + 1].face;
+            check_pair(data, a, b, sound[a.cell] && sound[b.cell], result, errors);
+        }
         if (end - i > 2)
             errors.add(
                 "faces shared by more than two cells", "cells ",

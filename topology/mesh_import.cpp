@@ -11,6 +11,7 @@
 #include "incise/topology/geometry.h"
 #include "incise/topology/hilbert.h"
 #include "incise/topology/mesh.h"
+#include "incise/topology/weld_outlook.h"
 
 namespace incise::topology {
 
@@ -177,6 +178,11 @@ class MeshImport {
         if (num_pinched > max_pinches_listed)
             check_.warnings.push_back("and " + std::to_string(num_pinched - max_pinches_listed) +
                                       " more such points");
+        if (num_pinched > 0)
+            if (const auto unlike = find_unlike_faces(data_, check_))
+                check_.warnings.push_back(name_of(*unlike, data_) +
+                                          " are no common face, so these cells are not joined: " +
+                                          remedy_for_unlike_faces);
         std::sort(mesh_.pinched_.begin(), mesh_.pinched_.end());
 
         mesh_.incident_elements_.resize(mesh_.rest_positions_.size());

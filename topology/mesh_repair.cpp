@@ -126,11 +126,10 @@ std::string remedy_for_coincidence(const MeshData& data, const WeldAdvice& advic
     const bool is_of_use = outlook.num_idle < outlook.num_joined;
     std::string obstacle = "no faces there have the same corners";
     if (const auto& unlike = outlook.unlike_faces)
-        obstacle += ", such as the quadrilateral of " + data.cell_name(unlike->first) +
-                    " and the triangles on it, one of " + data.cell_name(unlike->second);
+        obstacle += ", such as " + name_of(*unlike, data);
     if (!is_of_use)
         return "welding does not join the cells, since " + obstacle + ": " +
-               (outlook.unlike_faces ? "use one kind of element"
+               (outlook.unlike_faces ? remedy_for_unlike_faces
                                      : "let the meshes match where they meet") +
                or_apart;
     std::string text = advice.join;
@@ -265,21 +264,34 @@ void drop_welded_points(MeshData& data) {
     data.welded_to.clear();
 }
 
-std::size_t turn_inverted_cells(MeshData& data) {
+TurnedCells turn_inverted_cells(MeshData& data) {
     std::array<Vec3, max_corners> x;
-    std::size_t num_inverted = 0;
+    std::array<std::size_t, num_cell_kinds> num_inverted{};
+    std::array<bool, num_cell_kinds> has_sound{};
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
         const auto corners = data.cell(c);
         for (std::size_t k = 0; k < corners.size(); ++k) x[k] = position_of(data, corners[k]);
         const std::span<const Vec3> cell{x.data(), corners.size()};
         const double volume = signed_volume(data.kinds[c], cell);
         if (is_flat_to_rounding(data.kinds[c], cell, volume)) continue;
-        if (!(volume < 0.0)) return 0;
-        ++num_inverted;
+        const auto kind = static_cast<std::size_t>(data.kinds[c]);
+        if (volume < 0.0)
+            ++num_inverted[kind];
+        else
+            has_sound[kind] = true;
     }
-    if (num_inverted == 0) return 0;
+    TurnedCells turned;
+    std::array<bool, num_cell_kinds> is_turned{};
+    for (std::size_t kind = 0; kind < num_cell_kinds; ++kind) {
+        if (num_inverted[kind] == 0 || has_sound[kind]) continue;
+        is_turned[kind] = true;
+        turned.kinds.push_back(static_cast<CellKind>(kind));
+        turned.num_cells += num_inverted[kind];
+    }
+    if (turned.kinds.empty()) return turned;
     std::array<std::int64_t, max_corners> old{};
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
+        if (!is_turned[static_cast<std::size_t>(data.kinds[c])]) continue;
         std::ranges::copy(data.cell(c), old.begin());
         const auto& mirrored = traits(data.kinds[c]).mirrored;
         for (std::size_t k = 0; k < data.cell(c).size(); ++k)
@@ -287,13 +299,14 @@ std::size_t turn_inverted_cells(MeshData& data) {
         if (!data.cut_faces.empty())
             data.cut_faces[c] = mirrored_faces(data.kinds[c], data.cut_faces[c]);
     }
+    if (!is_turned[static_cast<std::size_t>(CellKind::tetrahedron)]) return turned;
     const auto& mirrored = traits(CellKind::tetrahedron).mirrored;
     for (std::array<Vec3, 4>& corners : data.carriers.corners) {
         const std::array<Vec3, 4> before = corners;
         for (std::size_t k = 0; k < corners.size(); ++k)
             corners[k] = before[static_cast<std::size_t>(mirrored[k])];
     }
-    return num_inverted;
+    return turned;
 }
 
 }  // namespace incise::topology

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "incise/topology/mesh_data.h"
 
@@ -40,10 +41,17 @@ std::string weld_report(std::size_t num_joined);
 /// Removes the points that were welded to others. Later points get lower numbers.
 void drop_welded_points(MeshData& data);
 
-/// Reverses the corner order of all cells, and of their carriers, if every cell has negative
-/// volume. Cells whose volume is zero to rounding are ignored in this test. Returns how many cells
-/// had negative volume, or zero if no cell was reversed.
+/// The cells that turn_inverted_cells() has turned.
+struct TurnedCells {
+    std::vector<CellKind> kinds;  ///< in the order of CellKind
+    std::size_t num_cells = 0;    ///< cells of these kinds with negative volume
+};
+
+/// Reverses the corner order of all cells of a kind, and of their carriers, if every cell of that
+/// kind has negative volume. Cells whose volume is zero to rounding are ignored in this test, but
+/// are reversed too. A kind is judged by itself, since programs differ in their order of the
+/// corners of a single kind, such as wedges.
 /// @pre  corners are valid point numbers, and all coordinates are finite
-std::size_t turn_inverted_cells(MeshData& data);
+TurnedCells turn_inverted_cells(MeshData& data);
 
 }  // namespace incise::topology

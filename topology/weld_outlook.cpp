@@ -5,8 +5,8 @@
 #include <array>
 #include <iterator>
 #include <map>
+#include <utility>
 
-#include "incise/topology/mesh_check.h"
 #include "incise/topology/mesh_repair.h"
 
 namespace incise::topology {
@@ -39,33 +39,45 @@ std::vector<SourceFace> boundary_of(const MeshData& data, const MeshCheck& check
     return boundary;
 }
 
-/// Returns two cells, if there are any: the first with a quadrilateral boundary face, the second
-/// with a triangular boundary face that has three corners of the quadrilateral.
-std::optional<std::pair<std::size_t, std::size_t>> find_unlike_faces(const MeshData& data,
-                                                                     const MeshCheck& checked) {
-    std::map<std::array<std::size_t, 3>, std::size_t> cell_of_corners;
+}  // namespace
+
+std::optional<UnlikeFaces> find_unlike_faces(const MeshData& data, const MeshCheck& checked) {
     const auto boundary = boundary_of(data, checked);
-    for (const SourceFace f : boundary) {
-        auto points = points_of(data, f);
+    std::map<std::array<std::size_t, 3>, std::size_t> face_of_corners;  // index in `boundary`
+    for (std::size_t i = 0; i < boundary.size(); ++i) {
+        auto points = points_of(data, boundary[i]);
         if (points.size() != 4) continue;
         std::ranges::sort(points);
         for (std::size_t left_out = 0; left_out < 4; ++left_out) {
             std::array<std::size_t, 3> three{};
             for (std::size_t k = 0; k < 3; ++k) three[k] = points[k < left_out ? k : k + 1];
-            cell_of_corners[three] = f.cell;
+            face_of_corners.emplace(three, i);
         }
     }
+    std::map<std::size_t, std::vector<std::size_t>> triangles_on;  // cells by index in `boundary`
     for (const SourceFace f : boundary) {
         auto points = points_of(data, f);
         if (points.size() != 3) continue;
         std::ranges::sort(points);
-        const auto found = cell_of_corners.find({points[0], points[1], points[2]});
-        if (found != cell_of_corners.end()) return std::pair(found->second, f.cell);
+        const auto found = face_of_corners.find({points[0], points[1], points[2]});
+        if (found != face_of_corners.end()) triangles_on[found->second].push_back(f.cell);
     }
-    return std::nullopt;
+    if (triangles_on.empty()) return std::nullopt;
+    auto& [face, cells] = *triangles_on.begin();
+    return UnlikeFaces{boundary[face].cell, std::move(cells)};
 }
 
-}  // namespace
+std::string name_of(const UnlikeFaces& faces, const MeshData& data) {
+    const std::size_t count = faces.of_triangles.size();
+    std::string text = "the quadrilateral of " + data.cell_name(faces.cell) +
+                       (count == 1 ? " and the triangle of " : " and the triangles of ");
+    for (std::size_t k = 0; k < count; ++k)
+        text += (k == 0           ? ""
+                 : k + 1 == count ? " and "
+                                  : ", ") +
+                data.cell_name(faces.of_triangles[k]);
+    return text + " on it";
+}
 
 WeldOutlook outlook_of_weld(const MeshData& data) {
     WeldOutlook outlook;

@@ -6,12 +6,31 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "incise/topology/mesh_check.h"
 #include "incise/topology/mesh_data.h"
 
 namespace incise::topology {
+
+/// A quadrilateral boundary face, and the triangular boundary faces on it: they have three of its
+/// four corners. Such faces are never one face.
+struct UnlikeFaces {
+    std::size_t cell;                       ///< of the quadrilateral
+    std::vector<std::size_t> of_triangles;  ///< the cells of the triangles, ascending; at least one
+};
+
+/// Returns the first quadrilateral boundary face with triangles on it, or nothing if there is none.
+/// @param checked  the result of check(data), without errors
+std::optional<UnlikeFaces> find_unlike_faces(const MeshData& data, const MeshCheck& checked);
+
+/// Returns a name for messages, such as "the quadrilateral of cell 3 (hexahedron) and the triangles
+/// of cell 8 (tetrahedron) and cell 9 (tetrahedron) on it".
+std::string name_of(const UnlikeFaces& faces, const MeshData& data);
+
+/// What joins a quadrilateral and triangles on it: the end of a message.
+inline constexpr const char* remedy_for_unlike_faces =
+    "put a layer of pyramids between them, each with its base on such a quadrilateral";
 
 /// The predicted result of welding.
 struct WeldOutlook {
@@ -20,9 +39,8 @@ struct WeldOutlook {
     std::optional<std::string> error;
     std::size_t num_joined = 0;  ///< points that would be joined to others
     std::size_t num_idle = 0;    ///< of these, the points at which no faces would be joined
-    /// Two cells, the first with a quadrilateral face and the second with a triangle on it, if
-    /// there are such cells. Welding cannot join these faces.
-    std::optional<std::pair<std::size_t, std::size_t>> unlike_faces;
+    /// Faces that welding cannot join, if there are any.
+    std::optional<UnlikeFaces> unlike_faces;
 };
 
 /// Returns the predicted result of weld(). Cost: that of two checks and of welding a copy.

@@ -22,6 +22,8 @@ const char* abaqus_element_type(topology::CellKind kind) {
             return "C3D6";
         case pyramid:
             return "C3D5";
+        case polyhedron:
+            break;
     }
     return "";
 }

@@ -18,6 +18,8 @@ int gmsh_element_type(topology::CellKind kind) {
             return 6;
         case pyramid:
             return 7;
+        case polyhedron:
+            break;
     }
     return 0;
 }

@@ -187,21 +187,43 @@ const ReadFormat* read_format_of(const InputFile& file) {
     return nullptr;
 }
 
-/// Completes the mesh of any format: recognizes the coincidence mark and turns inverted cells.
+/// Returns the warning that cells were turned.
+std::string warning_of_turned(const topology::MeshData& mesh, const topology::TurnedCells& turned) {
+    const auto num_of = [&](topology::CellKind kind) {
+        return static_cast<std::size_t>(std::ranges::count(mesh.kinds, kind));
+    };
+    std::size_t num_of_kinds = 0;
+    std::string names;
+    for (const auto kind : turned.kinds) {
+        num_of_kinds += num_of(kind);
+        names += (names.empty() ? "" : " and ") + std::string(topology::traits(kind).plural);
+    }
+    const std::size_t num_flat = num_of_kinds - turned.num_cells;
+    const bool is_whole_mesh = num_of_kinds == mesh.num_cells();
+    const std::string which = is_whole_mesh ? "cells" : names;
+    const std::string text =
+        (num_of_kinds == 1
+             ? "the only " +
+                   std::string(is_whole_mesh ? "cell" : topology::traits(turned.kinds[0]).name) +
+                   " has"
+         : num_flat > 0
+             ? "all " + which + " but " + std::to_string(num_flat) + " without volume have"
+             : "all " + std::to_string(num_of_kinds) + " " + which + " have") +
+        " negative volume by VTK's order of corners: the order was reversed";
+    return is_whole_mesh
+               ? text + "; make sure that the body is not the mirror image of what is meant"
+               : text + "; the other cells have their corners in that order";
+}
+
+/// Completes the mesh of any format: recognizes the coincidence mark and turns cells of a kind that
+/// is inverted.
 void finish(const InputFile& file, MeshFile& result) {
     constexpr std::size_t longest_head = 500;  // the mark is in one of the first lines
     if (std::string_view(file.bytes).substr(0, longest_head).find(coincidence_mark) !=
         std::string_view::npos)
         result.mesh.points_may_coincide = true;
-    if (const auto num_inverted = topology::turn_inverted_cells(result.mesh)) {
-        const auto num_cells = result.mesh.num_cells(), num_flat = num_cells - num_inverted;
-        result.warnings.push_back(
-            (num_cells == 1 ? "the only cell has"
-             : num_flat > 0 ? "all cells but " + std::to_string(num_flat) + " without volume have"
-                            : "all " + std::to_string(num_cells) + " cells have") +
-            std::string(" negative volume by VTK's order of corners: the order was reversed; make "
-                        "sure that the body is not the mirror image of what is meant"));
-    }
+    const auto turned = topology::turn_inverted_cells(result.mesh);
+    if (turned.num_cells > 0) result.warnings.push_back(warning_of_turned(result.mesh, turned));
 }
 
 /// Returns what a file that is no mesh is, and what to do with it.

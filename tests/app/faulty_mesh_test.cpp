@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -228,6 +229,71 @@ TEST_F(FaultyMesh, IsTurnedWhereAllCellsAreInverted) {
         << flat.err;
     write("some.msh", soup({first, "0 1 0  1 0 0  0 0 1  1 1 1"}));
     EXPECT_EQ(run("info some.msh").status, 2);
+}
+
+/// Cells of Gmsh, each far from the others.
+/// @param type  the number of the kind in Gmsh
+std::string scattered(int type, const std::vector<std::array<double, 3>>& corners, int num_cells) {
+    std::ostringstream nodes, elements;
+    std::size_t num_nodes = 0;
+    for (int c = 0; c < num_cells; ++c) {
+        elements << c + 101 << ' ' << type << " 2 1 1";
+        for (const auto& [x, y, z] : corners) {
+            nodes << ++num_nodes << ' ' << x + 10.0 * c << ' ' << y << ' ' << z << '\n';
+            elements << ' ' << num_nodes;
+        }
+        elements << '\n';
+    }
+    return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(num_nodes) + "\n" +
+           nodes.str() + "$EndNodes\n$Elements\n" + std::to_string(num_cells) + "\n" +
+           elements.str() + "$EndElements\n";
+}
+
+// Each corner of these cells is sound, and their volume is positive.
+TEST_F(FaultyMesh, HasCellsTooDistortedForForces) {
+    write("hex.msh", scattered(5,
+                               {{0, 0, 0},
+                                {1, 0, 0},
+                                {1, 1, 0},
+                                {0, 1, 0},
+                                {0, 0, 1},
+                                {1.8, 0.8, 0.1},
+                                {1, 1, 1},
+                                {0, 1, 1}},
+                               7));
+    write("wedge.msh",
+          scattered(6, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.2, 2, 0.9}, {0, 1, 1}}, 1));
+    const std::string reason =
+        " in the file) is so distorted that a part between its centre and one of its faces has no "
+        "volume; move its nodes, or divide it into tetrahedra\n";
+    const auto hex = run("check hex.msh");
+    EXPECT_EQ(hex.status, 2);
+    EXPECT_EQ(count_of(hex.err, reason), 5u) << hex.err;
+    EXPECT_NE(hex.err.find("hex.msh: cell 0 (hexahedron, number 101" + reason), std::string::npos)
+        << hex.err;
+    EXPECT_TRUE(hex.err.ends_with("hex.msh: and 2 more such cells\n")) << hex.err;
+    const auto wedge = run("check wedge.msh");
+    EXPECT_EQ(wedge.status, 2);
+    EXPECT_NE(wedge.err.find("wedge.msh: cell 0 (wedge, number 101" + reason), std::string::npos)
+        << wedge.err;
+    EXPECT_EQ(run("convert hex.msh hex.vtu").status, 0);  // which needs no forces
+}
+
+TEST_F(FaultyMesh, JoinsQuadrilateralsAndTrianglesByPyramids) {
+    // A cube, and two tetrahedra on its top.
+    write("mixed.vtk",
+          "# vtk DataFile Version 3.0\nmixed\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n"
+          "0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1  0.5 0.5 2\n"
+          "CELLS 3 19\n8 0 1 2 3 4 5 6 7\n4 4 5 6 8\n4 4 6 7 8\nCELL_TYPES 3\n12\n10\n10\n");
+    const auto outcome = run("check mixed.vtk");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(count_of(outcome.err,
+                       "mixed.vtk: the quadrilateral of cell 0 (hexahedron) and the triangles of "
+                       "cell 1 (tetrahedron) and cell 2 (tetrahedron) on it are no common face, so "
+                       "these cells are not joined: put a layer of pyramids between them, each "
+                       "with its base on such a quadrilateral\n"),
+              1u)
+        << outcome.err;
 }
 
 TEST_F(FaultyMesh, IsNoIndexOfFrames) {

@@ -180,7 +180,7 @@ TEST(Carriers, FollowScaleMirrorAndWelding) {
     const auto mirror = [](Vec3& x) { x.x() = -x.x(); };
     std::ranges::for_each(mirrored.points, mirror);
     for (auto& corners : mirrored.carriers.corners) std::ranges::for_each(corners, mirror);
-    EXPECT_EQ(turn_inverted_cells(mirrored), mirrored.num_cells());
+    EXPECT_EQ(turn_inverted_cells(mirrored).num_cells, mirrored.num_cells());
     EXPECT_EQ(num_fragments(mirrored), num_fragments(data));
 
     // Welding closes the cut: the carriers are whole again, though they consist of several cells.

@@ -157,6 +157,28 @@ TEST(MeshReader, TurnsCellsThatAreAllInverted) {
         }
 }
 
+TEST(MeshReader, TurnsCellsOfAKindThatIsInverted) {
+    const TemporaryFolder folder;
+    for (const char* suffix : written_suffixes)
+        for (std::size_t c = 0; c < sample_mesh().num_cells(); ++c) {
+            SCOPED_TRACE(std::string(suffix) + ", cell " + std::to_string(c));
+            auto mesh = sample_mesh();
+            const auto mirrored = sample_cell(c, true);
+            std::ranges::copy(mirrored.corners,
+                              mesh.corners.begin() + static_cast<std::ptrdiff_t>(mesh.offsets[c]));
+            const auto path = folder / (std::string("mesh") + suffix);
+            write_mesh(path, mesh);
+            const auto file = read_mesh(path);
+            EXPECT_THAT(
+                file.warnings,
+                ElementsAre(std::string("the only ") + topology::traits(mesh.kinds[c]).name +
+                            " has negative volume by VTK's order of corners: the order was "
+                            "reversed; the other cells have their corners in that order"));
+            if (std::string_view(suffix) != ".mesh")  // which lists cells by kind
+                expect_same_mesh(file.mesh, sample_mesh());
+        }
+}
+
 TEST(MeshReader, LeavesSomeInvertedCellsAsTheyAre) {
     const TemporaryFolder folder;
     auto mesh = topology::box_mesh(CellKind::tetrahedron, Vec3(0, 0, 0), Vec3(1, 2, 3), {2, 2, 2});

@@ -144,7 +144,7 @@ class Texts(unittest.TestCase):
     def test_tools(self) -> None:
         body = support.world()
         refused = self.assert_refused
-        refused("tool 'k': tool: key 'kind'", lambda: body.add_tool("k", {"kind": "knive"}))
+        refused("tool 'k': key 'kind'", lambda: body.add_tool("k", {"kind": "knive"}))
         refused("key 'edge': must have at least 2 points",
                 lambda: body.add_tool("k", {"kind": "blade", "edge": [[0, 0, 0]]}))
         refused("this one is led by hand",

@@ -69,6 +69,45 @@ TEST(FibredBody, IsStifferAlongItsFibresThanAcross) {
     EXPECT_GT(along, 2.0 * across);
 }
 
+/// The warnings of a run up to the first one, or to its end.
+std::vector<std::string> first_warnings(const Scenario& scenario) {
+    Simulation simulation(scenario);
+    simulation.start();
+    for (int rest = 5; rest > 0 && !simulation.is_finished();) {
+        simulation.step();
+        if (!simulation.warnings().empty()) --rest;  // it is told once
+    }
+    return simulation.warnings();
+}
+
+TEST(FibredBody, WarnsOnceWhereItStiffensMuch) {
+    const RunFolder folder;
+    const std::string drawn =
+        "[[constraint]]\nname = \"floor\"\n"
+        "where = { half_space = { point = [0, 0, 0], normal = [0, 0, -1] } }\nfix = \"xyz\"\n"
+        "[[constraint]]\nname = \"ceiling\"\n"
+        "where = { half_space = { point = [0, 0, 0.1], normal = [0, 0, 1] } }\n"
+        "move = [{ time = 0, by = [0, 0, 0] }, { time = 1, by = [0, 0, 0.1] }]\n"
+        "[dynamics]\nend_time = 1\ndamping = 20\nsafety = 0.2\n";
+    const std::string material = fibred_material + "fibre = [0, 0, 1]\n", k2 = "k2 = 0.5";
+    for (const std::string element : {"tet", "hex"}) {
+        SCOPED_TRACE(element);
+        std::string box = box_of_tissue;
+        box.insert(box.find(" }"), ", element = \"" + element + "\"");
+        EXPECT_EQ(first_warnings(folder.scenario(box + material + pulled)),
+                  std::vector<std::string>{});
+        std::string stiffer = material;
+        stiffer.replace(stiffer.find(k2), k2.size(), "k2 = 5");
+        const auto warnings = first_warnings(folder.scenario(box + stiffer + drawn));
+        ASSERT_EQ(warnings.size(), 1u);
+        for (const auto* part :
+             {"at t = 0.", " s, strain has made tissue so stiff that the stable step fell from ",
+              " s at rest to ", "; most strained is element ", ", of region 0, with a volume ratio",
+              "; let tools, obstacles and constraints press it less far"})
+            EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0];
+    }
+}
+
 TEST(FibredBody, CarriesDirectionsFromTheMeshToFrames) {
     const RunFolder folder;
     io::Frame frame = frame_with_vectors("collagen");

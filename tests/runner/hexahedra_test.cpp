@@ -208,11 +208,19 @@ fix = "xyz"
                                          "prony_rule = \"nodal\"\n"));
         ADD_FAILURE() << "accepted";
     } catch (const InputError& error) {
-        EXPECT_NE(
-            std::string(error.what())
-                .find(" is a hexahedron; the nodal rule of a Prony series needs tetrahedra: give "
-                      "the region a material with method = \"heml\""),
-            std::string::npos)
+        EXPECT_TRUE(std::string(error.what())
+                        .ends_with(" is a hexahedron; the nodal rule of a Prony series needs "
+                                   "tetrahedra: leave out prony_rule = \"nodal\""))
+            << error.what();
+    }
+    try {
+        Simulation other(folder.scenario(head + "[[material]]\nmethod = \"mass-spring\"\n"
+                                                "density = 1000\nyoung = 1000\n"));
+        ADD_FAILURE() << "accepted";
+    } catch (const InputError& error) {
+        EXPECT_TRUE(std::string(error.what())
+                        .ends_with(" is a hexahedron; the method mass-spring needs tetrahedra: "
+                                   "give the region a material with method = \"heml\""))
             << error.what();
     }
 }

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "incise/base/error.h"
 #include "incise/topology/box_mesh.h"
 
@@ -28,7 +30,7 @@ topology::Mesh mesh_of(topology::CellKind kind) {
 }
 
 HandTool build(const Value& definition, const std::string& why_no_contact = {}) {
-    return build_hand_tool(definition, ".", mesh_of(topology::CellKind::tetrahedron),
+    return build_hand_tool("mine", definition, ".", mesh_of(topology::CellKind::tetrahedron),
                            why_no_contact);
 }
 
@@ -68,8 +70,36 @@ TEST(HandTool, IsWhatTheKeysOfAScenarioSay) {
 
 TEST(HandTool, TakesTheModeThatSuitsTheMesh) {
     const Value blade = table({{"kind", text("blade")}, {"edge", edge}});
-    const HandTool made = build_hand_tool(blade, ".", mesh_of(topology::CellKind::hexahedron), "");
+    const HandTool made =
+        build_hand_tool("mine", blade, ".", mesh_of(topology::CellKind::hexahedron), "");
     EXPECT_EQ(std::get<cutting::Blade>(made.shape).mode, cutting::CutMode::separate);
+}
+
+/// True if each line of the text begins with the name of the tool, once.
+bool names_the_tool_once(const std::string& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        if (!line.starts_with("tool 'mine'") || line.rfind("tool") != 0) return false;
+    return true;
+}
+
+TEST(HandTool, IsNamedOnceInEachMessage) {
+    const topology::Mesh hexahedra = mesh_of(topology::CellKind::hexahedron);
+    const Value splitting =
+        table({{"kind", text("blade")}, {"edge", edge}, {"mode", text("split")}});
+    const Value tough =
+        table({{"kind", text("blade")}, {"edge", edge}, {"toughness", number(100.0)}});
+    const Value of_file =
+        table({{"kind", text("cut")}, {"surface", table({{"file", text("none.stl")}})}});
+    const Value no_edge = table({{"kind", text("blade")}, {"edge", list({point(0, 0, 0)})}});
+    for (const Value& definition : {splitting, tough, of_file, no_edge, number(3.0)}) {
+        try {
+            build_hand_tool("mine", definition, ".", hexahedra, "");
+            ADD_FAILURE() << "accepted";
+        } catch (const InputError& error) {
+            EXPECT_TRUE(names_the_tool_once(error.what())) << error.what();
+        }
+    }
 }
 
 TEST(HandTool, RefusesAllThatIsWrongAtOnce) {
@@ -78,7 +108,7 @@ TEST(HandTool, RefusesAllThatIsWrongAtOnce) {
                                                   {"toughness", number(-1.0)},
                                                   {"path", list({})},
                                                   {"colour", text("red")}}));
-    EXPECT_THAT(refusal, HasSubstr("tool: key 'edge': must have at least 2 points"));
+    EXPECT_THAT(refusal, HasSubstr("tool 'mine': key 'edge': must have at least 2 points"));
     EXPECT_THAT(refusal, HasSubstr("key 'toughness': -1 is not allowed"));
     EXPECT_THAT(refusal, HasSubstr("key 'path': belongs to a tool of a scenario"));
     EXPECT_THAT(refusal, HasSubstr("colour"));

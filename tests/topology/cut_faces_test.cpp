@@ -138,7 +138,7 @@ TEST(CutFaces, StayMarkedInAMirroredBody) {
         const double before = area(data);
         EXPECT_GT(before, 0.0);
         for (Vec3& x : data.points) x.x() = -x.x();
-        EXPECT_EQ(turn_inverted_cells(data), data.num_cells());
+        EXPECT_EQ(turn_inverted_cells(data).num_cells, data.num_cells());
         EXPECT_NEAR(area(data), before, 1e-12 * before);
     }
 }

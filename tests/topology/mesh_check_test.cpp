@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
+#include <span>
+#include <sstream>
+#include <utility>
 
 #include "incise/base/error.h"
 #include "incise/topology/box_mesh.h"
@@ -74,9 +78,144 @@ TEST(MeshCheck, RefusesZeroAndNegativeVolume) {
     std::swap(data.corners[4], data.corners[5]);
     const MeshCheck result = check(data);
     ASSERT_FALSE(result.errors.empty());
-    EXPECT_NE(result.errors[0].find("cell 1 (tetrahedron) has negative volume -0.35"),
-              std::string::npos)
+    EXPECT_TRUE(result.errors[0].starts_with("cell 1 (tetrahedron) has negative volume -0.35") &&
+                result.errors[0].ends_with("; its corners run the wrong way round: take them in "
+                                           "the order 0, 2, 1, 3 (counted from 0)"))
         << result.errors[0];
+}
+
+/// The order of corners that a message names, such as "in the order 0, 2, 1, 3 (counted".
+std::vector<std::size_t> order_in(const std::string& message) {
+    const std::string words = "take them in the order ";
+    std::vector<std::size_t> order;
+    const auto at = message.find(words);
+    if (at == std::string::npos) return order;
+    std::istringstream text(message.substr(at + words.size()));
+    for (std::size_t corner = 0; text >> corner; text.ignore()) order.push_back(corner);
+    return order;
+}
+
+void reorder(MeshData& data, std::size_t c, std::span<const std::size_t> order) {
+    const std::vector<std::int64_t> old(data.cell(c).begin(), data.cell(c).end());
+    for (std::size_t k = 0; k < old.size(); ++k) data.corners[data.offsets[c] + k] = old[order[k]];
+}
+
+/// Orders in which programs other than VTK give the corners.
+std::vector<std::vector<std::size_t>> wrong_orders(CellKind kind) {
+    switch (kind) {
+        case CellKind::tetrahedron:
+            return {{1, 0, 2, 3}};
+        case CellKind::hexahedron:
+            return {{0, 3, 2, 1, 4, 7, 6, 5}, {4, 5, 6, 7, 0, 1, 2, 3}, {0, 1, 3, 2, 4, 5, 7, 6},
+                    {0, 3, 1, 2, 4, 7, 5, 6}, {0, 1, 2, 3, 4, 7, 6, 5}, {0, 1, 2, 3, 7, 6, 5, 4}};
+        case CellKind::wedge:
+            return {{0, 2, 1, 3, 5, 4}, {3, 4, 5, 0, 1, 2}, {0, 1, 2, 3, 5, 4}, {0, 1, 2, 5, 4, 3}};
+        case CellKind::pyramid:
+            return {{0, 3, 2, 1, 4}, {0, 1, 3, 2, 4}, {0, 3, 1, 2, 4}};
+    }
+    return {};
+}
+
+TEST(MeshCheck, NamesTheOrderThatMendsACell) {
+    for (const auto& family : test::mesh_families()) {
+        std::array<bool, num_cell_kinds> is_done{};
+        for (std::size_t c = 0; c < family.data.num_cells(); ++c) {
+            const CellKind kind = family.data.kinds[c];
+            if (std::exchange(is_done[static_cast<std::size_t>(kind)], true)) continue;
+            for (const auto& wrong : wrong_orders(kind)) {
+                SCOPED_TRACE(family.name + ", " + testing::PrintToString(wrong));
+                MeshData data = family.data;
+                reorder(data, c, wrong);
+                const auto errors = check(data).errors;
+                ASSERT_EQ(errors.size(), 1u) << errors.back();  // nothing of its neighbours
+                EXPECT_TRUE(errors[0].starts_with(data.cell_name(c))) << errors[0];
+                const auto order = order_in(errors[0]);
+                ASSERT_EQ(order.size(), data.cell(c).size()) << errors[0];
+                reorder(data, c, order);
+                EXPECT_TRUE(check(data).errors.empty());
+            }
+        }
+    }
+}
+
+TEST(MeshCheck, SaysThatAllCellsAreInverted) {
+    for (const auto& family : test::mesh_families()) {
+        SCOPED_TRACE(family.name);
+        MeshData data = family.data;
+        for (std::size_t c = 0; c < data.num_cells(); ++c) {
+            const auto& mirrored = traits(data.kinds[c]).mirrored;
+            reorder(data, c, std::vector<std::size_t>(mirrored.begin(), mirrored.end()));
+        }
+        const auto errors = check(data).errors;
+        ASSERT_FALSE(errors.empty());
+        for (const auto& error : errors)
+            EXPECT_TRUE(error.find("negative volume") != std::string::npos ||
+                        error.ends_with("more cells without positive volume"))
+                << error;
+    }
+}
+
+/// A cell of the kind that `corners` makes of a unit cube or of a prism, with repeated corners.
+MeshData collapsed(CellKind kind, std::vector<std::int64_t> corners) {
+    MeshData data = box_mesh(CellKind::hexahedron, {0, 0, 0}, {1, 1, 1}, {1, 1, 1});
+    const std::vector<std::int64_t> cube(data.cell(0).begin(), data.cell(0).end());
+    for (auto& corner : corners) corner = cube[static_cast<std::size_t>(corner)];
+    data.kinds = {kind};
+    data.offsets = {0, corners.size()};
+    data.corners = corners;
+    return data;
+}
+
+TEST(MeshCheck, SaysWhatACellWithRepeatedCornersIs) {
+    struct Case {
+        CellKind kind;
+        std::vector<std::int64_t> corners;
+        CellKind is;
+    };
+    using enum CellKind;
+    for (const auto& [kind, corners, is] :
+         std::vector<Case>{{hexahedron, {0, 1, 2, 2, 4, 5, 6, 6}, wedge},       // two edges
+                           {hexahedron, {0, 1, 2, 3, 4, 5, 4, 5}, hexahedron},  // crosswise: none
+                           {hexahedron, {0, 0, 2, 3, 4, 4, 6, 7}, wedge},
+                           {hexahedron, {0, 1, 2, 3, 4, 4, 7, 7}, wedge},
+                           {hexahedron, {0, 1, 2, 3, 4, 4, 4, 4}, pyramid},  // a face
+                           {hexahedron, {0, 0, 0, 0, 4, 5, 6, 7}, pyramid},
+                           {hexahedron, {0, 1, 2, 2, 4, 4, 4, 4}, tetrahedron},
+                           {wedge, {0, 2, 1, 0, 6, 5}, pyramid},  // an edge between the triangles
+                           {wedge, {0, 2, 1, 4, 4, 4}, tetrahedron},
+                           {pyramid, {0, 1, 2, 2, 4}, tetrahedron}}) {
+        SCOPED_TRACE(testing::PrintToString(corners));
+        MeshData data = collapsed(kind, corners);
+        const auto errors = check(data).errors;
+        ASSERT_EQ(errors.size(), 1u);
+        if (is == kind) {
+            EXPECT_TRUE(errors[0].ends_with("; remove the cell")) << errors[0];
+            continue;
+        }
+        const std::string words = std::string("so that it is a ") + traits(is).name +
+                                  ": write it as a " + traits(is).name + " of the points ";
+        const auto at = errors[0].find(words);
+        ASSERT_NE(at, std::string::npos) << errors[0];
+        std::istringstream text(errors[0].substr(at + words.size()));
+        std::vector<std::int64_t> points;
+        for (std::int64_t point = 0; text >> point; text.ignore()) points.push_back(point);
+        ASSERT_EQ(points.size(), static_cast<std::size_t>(traits(is).num_corners)) << errors[0];
+        data.kinds = {is};
+        data.offsets = {0, points.size()};
+        data.corners = points;
+        EXPECT_TRUE(check(data).errors.empty()) << check(data).errors[0];
+    }
+}
+
+TEST(MeshCheck, NumbersTheCornersOfACollapsedCellAsTheFileDoes) {
+    MeshData data = collapsed(CellKind::hexahedron, {0, 1, 2, 3, 4, 4, 4, 4});
+    const auto apex = data.corners[4];
+    for (std::size_t p = 0; p < data.points.size(); ++p)
+        data.source_points.push_back(static_cast<std::int64_t>(p) + 100);
+    const auto errors = check(data).errors;
+    EXPECT_TRUE(
+        errors[0].ends_with(", " + std::to_string(apex + 100) + " of the file, in VTK's order"))
+        << errors[0];
 }
 
 TEST(MeshCheck, RefusesCornersTurnedInsideOut) {
