@@ -54,6 +54,30 @@ struct CentreDivision {
             if (part < (end += traits.face(f).size() == 4 ? 4 : 1)) return f;
     }
 
+    /// The tetrahedra that three edges at a corner make: one at a corner of three edges, and four
+    /// at the apex of a pyramid.
+    static constexpr std::size_t num_corner_parts =
+        kind == topology::CellKind::pyramid ? 8 : num_corners;
+    /// By such a tetrahedron, the corner and the three at the other ends of the edges. They run
+    /// anticlockwise as seen from outside the cell.
+    static constexpr std::array<std::array<std::size_t, 4>, num_corner_parts> corner_parts() {
+        std::array<std::array<std::size_t, 4>, num_corner_parts> all{};
+        std::size_t next = 0;
+        for (std::size_t c = 0; c < num_corners; ++c) {
+            std::array<std::size_t, 4> around{};
+            std::size_t count = 0;
+            std::size_t n = next_around(c, num_corners);
+            do {
+                around[count++] = n;
+                n = next_around(c, n);
+            } while (n != around[0]);
+            for (std::size_t first = 0; first < (count == 3 ? 1 : count); ++first)
+                all[next++] = {c, around[first], around[(first + 1) % count],
+                               around[(first + 2) % count]};
+        }
+        return all;
+    }
+
     using Corners = std::array<Vec3, num_corners>;
     using Points = std::array<Vec3, num_points>;
     /// Returns the values at all points of a field that is linear in those at the corners.
@@ -61,6 +85,22 @@ struct CentreDivision {
     /// Returns the sums at the corners of what acts at the points, each with its weight.
     static Corners gathered(const Points& f);
     static std::array<double, num_corners> gathered(const std::array<double, num_points>& f);
+
+  private:
+    /// Returns the neighbour of corner `c` that follows the neighbour `n`, anticlockwise; the first
+    /// one if there is no corner `n`.
+    static constexpr std::size_t next_around(std::size_t c, std::size_t n) {
+        for (int f = 0; f < traits.num_faces; ++f) {
+            const auto face = traits.face(f);
+            for (std::size_t p = 0; p < face.size(); ++p) {
+                const auto before =
+                    static_cast<std::size_t>(face[(p + face.size() - 1) % face.size()]);
+                if (static_cast<std::size_t>(face[p]) == c && (before == n || n == num_corners))
+                    return static_cast<std::size_t>(face[(p + 1) % face.size()]);
+            }
+        }
+        return num_corners;
+    }
 };
 
 /// Returns visit(CentreDivision<kind>()).

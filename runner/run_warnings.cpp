@@ -123,7 +123,7 @@ bool RunWarnings::add_loss(const sim::World& world, const std::string& when,
     std::size_t num_crushed = 0;
     if (model.energetics().min_volume_ratio() < least_volume_ratio)
         for (const ElementId e : model.fragments().elements())
-            num_crushed += model.element_result(e).volume_ratio < least_volume_ratio;
+            num_crushed += model.least_volume_ratio(e) < least_volume_ratio;
     std::ostringstream text;
     text << when << world.time() << " s, ";
     if (num_crushed > 0) {

@@ -103,6 +103,12 @@ class Model {
             .result(e, positions(), state_.history());
     }
 
+    /// Returns the least ratio of current over rest volume in an element: in a hexahedron, wedge or
+    /// pyramid of HEML that of one of its tetrahedra. Else it is that of element_result().
+    double least_volume_ratio(ElementId e) const {
+        return structure_.elements().block_of(fragments(), e).least_volume_ratio(e, positions());
+    }
+
     /// Replaces the state and computes its forces. Viscous elements treat the change as an
     /// instantaneous strain, so that they respond with their instantaneous moduli.
     /// @param positions   by node of the fragments, FragmentMesh::node_capacity() of them, m

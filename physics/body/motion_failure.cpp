@@ -22,11 +22,8 @@ std::pair<ElementId, double> most_crushed_before(const Model& model, NodeId n, d
     fragments.star(n, star);
     std::pair<ElementId, double> lowest{star.front(), std::numeric_limits<double>::infinity()};
     for (const ElementId e : star)
-        if (const double J = model.structure()
-                                 .elements()
-                                 .block_of(fragments, e)
-                                 .result(e, before, model.state().history())
-                                 .volume_ratio;
+        if (const double J =
+                model.structure().elements().block_of(fragments, e).least_volume_ratio(e, before);
             J < lowest.second)
             lowest = {e, J};
     return lowest;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "incise/physics/elements/centre_state.h"
+#include "incise/physics/elements/symmetric_tensor.h"
 
 namespace incise::physics {
 
@@ -12,24 +13,11 @@ using topology::CellKind;
 
 namespace {
 
-using Components = Eigen::Matrix<double, 6, 1>;  // 11, 22, 33, 12, 23, 31
-
-Mat3 tensor_of(const Components& t) {
-    Mat3 matrix;
-    matrix << t[0], t[3], t[5], t[3], t[1], t[4], t[5], t[4], t[2];
-    return matrix;
-}
-Components components_of(const Mat3& matrix) {
-    Components t;
-    t << matrix(0, 0), matrix(1, 1), matrix(2, 2), matrix(0, 1), matrix(1, 2), matrix(2, 0);
-    return t;
-}
-
-/// The memory of a cell: row 0 has the stresses of the law, row i those of term i - 1.
-template <class Number>
-auto components(std::span<Number> memory, std::size_t num_parts, std::size_t row, std::size_t t) {
-    using Map = std::conditional_t<std::is_const_v<Number>, const Components, Components>;
-    return Eigen::Map<Map>(memory.data() + 6 * (row * num_parts + t));
+/// Returns a stress of tetrahedron t in the memory of a cell: of the law in row 0, and of term i -
+/// 1 in row i.
+template <CellKind kind>
+auto stress_in(auto memory, std::size_t row, std::size_t t) {
+    return tensor(memory, row * CentreViscousKernel<kind>::num_parts + t);
 }
 
 }  // namespace
@@ -51,10 +39,9 @@ typename CentreViscousKernel<kind>::Corners CentreViscousKernel<kind>::forces_of
     const CellState<kind> state(*this, e, x);
     Stresses stresses;
     for (std::size_t t = 0; t < num_parts; ++t) {
-        Components relaxed = -(1.0 - long_time_share) * components(memory, num_parts, 0, t);
-        for (std::size_t i = 0; i < terms.size(); ++i)
-            relaxed += components(memory, num_parts, i + 1, t);
-        stresses[t] = state.of_part[t].mean.F * tensor_of(relaxed);
+        SymmetricTensor relaxed = -(1.0 - long_time_share) * stress_in<kind>(memory, 0, t);
+        for (std::size_t i = 0; i < terms.size(); ++i) relaxed += stress_in<kind>(memory, i + 1, t);
+        stresses[t] = state.of_part[t].mean.F * matrix_of(relaxed);
     }
     return forces_of_stresses(*this, e, state, stresses);
 }
@@ -77,8 +64,8 @@ typename CentreViscousKernel<kind>::EndOfStep CentreViscousKernel<kind>::end_of_
         const PronyStep rule = prony_step(terms[i], dt);
         end.share += rule.gain;
         for (std::size_t t = 0; t < num_parts; ++t)
-            end.stresses[t] += tensor_of(rule.decay * components(memory, num_parts, i + 1, t) -
-                                         rule.gain * components(memory, num_parts, 0, t));
+            end.stresses[t] += matrix_of(rule.decay * stress_in<kind>(memory, i + 1, t) -
+                                         rule.gain * stress_in<kind>(memory, 0, t));
     }
     return end;
 }
@@ -128,19 +115,18 @@ double CentreViscousKernel<kind>::advance(const Element& e, const Corners& befor
     for (std::size_t t = 0; t < num_parts; ++t) {
         const Deformation& d = to.of_part[t].mean;
         const LawResponse<double> r = response(this->law, d.strain, J0);
-        const Components S =
-            components_of(second_piola_kirchhoff(r, d.twice_strain, d.strain.J, J0, e.fibre));
-        Components twice_mean = Components::Zero();
+        const SymmetricTensor S =
+            symmetric_tensor(second_piola_kirchhoff(r, d.twice_strain, d.strain.J, J0, e.fibre));
+        SymmetricTensor twice_mean = SymmetricTensor::Zero();
         for (std::size_t i = 0; i < terms.size(); ++i) {
-            auto H = components(memory, num_parts, i + 1, t);
+            auto H = stress_in<kind>(memory, i + 1, t);
             twice_mean += H;
-            H = (steps[i].decay * H + steps[i].gain * (S - components(memory, num_parts, 0, t)))
-                    .eval();
+            H = (steps[i].decay * H + steps[i].gain * (S - stress_in<kind>(memory, 0, t))).eval();
             twice_mean += H;
         }
-        components(memory, num_parts, 0, t) = S;
+        stress_in<kind>(memory, 0, t) = S;
         work += 0.25 * e.volumes[t] *
-                tensor_of(twice_mean)
+                matrix_of(twice_mean)
                     .cwiseProduct(d.twice_strain - from.of_part[t].mean.twice_strain)
                     .sum();
     }

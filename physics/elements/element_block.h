@@ -141,6 +141,9 @@ class ElementBlock {
     /// Returns the result of one element at `positions`, m, by node id.
     virtual ElementResult result(ElementId e, std::span<const Vec3> positions,
                                  const ViscousHistory& history) const = 0;
+    /// Returns the least ratio of current over rest volume in one element at `positions`, m, by
+    /// node id. In a tetrahedron it is that of ElementResult.
+    virtual double least_volume_ratio(ElementId e, std::span<const Vec3> positions) const = 0;
     /// Sets the results of all elements, in the order of elements(). They equal those of result()
     /// within rounding.
     virtual void results(std::span<const Vec3> positions, const ViscousHistory& history,

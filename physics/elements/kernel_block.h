@@ -23,6 +23,13 @@ concept TakesFibre = requires(const Kernel& kernel, typename Kernel::Corners X, 
     kernel.precompute(X, fibre);
 };
 
+/// A kernel whose elements can be inverted in a part alone, such as VirtualCentreKernel.
+template <class Kernel>
+concept HasLeastVolumeRatio = requires(const Kernel& kernel, const typename Kernel::Element& e,
+                                       const typename Kernel::Corners& x) {
+    kernel.least_volume_ratio(e, x);
+};
+
 /// A kernel with a SIMD version `Kernel::Lanes`, such as SimdHemlElements, which computes the
 /// elastic forces of all elements of a block. The viscous forces come from `Kernel::MemoryLanes`
 /// if there are any, else from the kernel.
@@ -196,8 +203,7 @@ class KernelBlock final : public ElementBlock {
         for (std::size_t s = 0; s < elements_.size(); ++s) {
             const Corners x = gather(s, positions);
             state.elastic_energy += row(s).share * kernel_.energy(row(s).rest, x);
-            state.min_volume_ratio =
-                std::min(state.min_volume_ratio, kernel_.volume_ratio(row(s).rest, x));
+            state.min_volume_ratio = std::min(state.min_volume_ratio, least_volume_ratio(s, x));
         }
         return state;
     }
@@ -240,6 +246,11 @@ class KernelBlock final : public ElementBlock {
     double stiffening(ElementId e, std::span<const Vec3> positions) const override {
         const std::size_t s = slot_of(e);
         return std::max(kernel_.stiffening(row(s).rest, gather(s, positions)), 1.0);
+    }
+
+    double least_volume_ratio(ElementId e, std::span<const Vec3> positions) const override {
+        const std::size_t s = slot_of(e);
+        return least_volume_ratio(s, gather(s, positions));
     }
 
     const NodalContributions& contributions(ElementId e) const override {
@@ -345,6 +356,13 @@ class KernelBlock final : public ElementBlock {
         typename LanesOf<Kernel>::Type lanes;
         fill(lanes, in_doubles, [&](std::size_t s) { lanes.set(s, row(s).rest, row(s).share); });
         return use(lanes);
+    }
+
+    double least_volume_ratio(std::size_t s, const Corners& x) const {
+        if constexpr (HasLeastVolumeRatio<Kernel>)
+            return kernel_.least_volume_ratio(row(s).rest, x);
+        else
+            return kernel_.volume_ratio(row(s).rest, x);
     }
 
     std::array<float, num_corners> stiffness_of(std::size_t s) const {

@@ -2,6 +2,7 @@
 #include "incise/physics/elements/virtual_centre_kernel.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "incise/base/error.h"
 #include "incise/physics/elements/centre_state.h"
@@ -48,6 +49,27 @@ double VirtualCentreKernel<kind>::volume_ratio(const Element& e, const Corners& 
     for (const auto& p : Division::parts())
         volume += topology::tetrahedron_volume(at[p[0]], at[p[1]], at[p[2]], at[p[3]]);
     return volume / e.volume;
+}
+
+template <CellKind kind>
+double VirtualCentreKernel<kind>::least_volume_ratio(const Element& e, const Corners& x) const {
+    double least = std::numeric_limits<double>::infinity();
+    const auto at = Division::points(x);
+    for (std::size_t t = 0; t < num_parts; ++t) {
+        const auto& p = CellState<kind>::parts[t];
+        const double now = topology::tetrahedron_volume(at[p[0]], at[p[1]], at[p[2]], at[p[3]]);
+        least = std::min(least, now / e.volumes[t]);
+    }
+    constexpr double flat = 1e-6;  // of the volume of the cell
+    static constexpr auto corner_parts = Division::corner_parts();
+    for (const auto& c : corner_parts) {
+        const auto volume_in = [&](const Corners& of) {
+            return topology::tetrahedron_volume(of[c[0]], of[c[1]], of[c[2]], of[c[3]]);
+        };
+        if (const double at_rest = volume_in(e.rest); at_rest > flat * e.volume)
+            least = std::min(least, volume_in(x) / at_rest);
+    }
+    return least;
 }
 
 template <CellKind kind>

@@ -59,6 +59,10 @@ struct VirtualCentreKernel {
 
     /// Returns current over rest volume; negative for an inverted cell.
     double volume_ratio(const Element& e, const Corners& x) const;
+    /// Returns the least ratio of current over rest volume in the cell: of its tetrahedra, and of
+    /// those that the edges at each corner make. It is not positive for a cell that is folded
+    /// inside, whatever volume_ratio() is. Corners that are flat at rest do not count.
+    double least_volume_ratio(const Element& e, const Corners& x) const;
     /// Returns the highest P-wave modulus at rest times the rest volume, J.
     double stiffness_energy(const Element& e) const;
     /// Returns the elastic energy, J.

@@ -5,30 +5,11 @@
 #include <cmath>
 #include <utility>
 
+#include "incise/physics/elements/symmetric_tensor.h"
+
 namespace incise::physics {
 
 namespace {
-
-/// A symmetric tensor by its components 11, 22, 33, 12, 23, 31.
-using SymmetricTensor = Eigen::Matrix<double, 6, 1>;
-
-Mat3 matrix_of(const SymmetricTensor& t) {
-    Mat3 matrix;
-    matrix << t[0], t[3], t[5], t[3], t[1], t[4], t[5], t[4], t[2];
-    return matrix;
-}
-SymmetricTensor symmetric_tensor(const Mat3& matrix) {
-    SymmetricTensor t;
-    t << matrix(0, 0), matrix(1, 1), matrix(2, 2), matrix(0, 1), matrix(1, 2), matrix(2, 0);
-    return t;
-}
-
-Eigen::Map<SymmetricTensor> tensor(std::span<double> memory, std::size_t i) {
-    return Eigen::Map<SymmetricTensor>(memory.data() + 6 * i);
-}
-Eigen::Map<const SymmetricTensor> tensor(std::span<const double> memory, std::size_t i) {
-    return Eigen::Map<const SymmetricTensor>(memory.data() + 6 * i);
-}
 
 SymmetricTensor sum_of_terms(std::span<const double> memory, std::size_t num_terms) {
     SymmetricTensor sum = SymmetricTensor::Zero();

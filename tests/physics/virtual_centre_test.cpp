@@ -138,6 +138,30 @@ TEST(VirtualCentre, IsAtRestWithoutForcesAndTurnsWithoutStrain) {
     });
 }
 
+TEST(VirtualCentre, TellsThatACellIsFoldedInside) {
+    for_each_kernel_of_cells([](const auto& kernel, auto kind) {
+        test::Random random(7);
+        for (int i = 0; i < 3; ++i) {
+            const auto X = random_cell<kind()>(random);
+            const auto e = kernel.precompute(X, fibre);
+            const Mat3 F = gentle_deformation(random, 0.3);
+            auto x = moved<kind()>(X, F, 0.0, random);
+            EXPECT_NEAR(kernel.least_volume_ratio(e, x), F.determinant(), 1e-12);
+            // A corner goes through the plane of those that it is joined to.
+            constexpr auto corner_parts = CentreDivision<kind()>::corner_parts();
+            for (const auto& c : corner_parts) {
+                auto folded = x;
+                folded[c[0]] += 1.2 * ((x[c[1]] + x[c[2]] + x[c[3]]) / 3.0 - x[c[0]]);
+                const bool is_apex = kind() == CellKind::pyramid && c[0] == 4;
+                if (!is_apex) {  // the whole of a pyramid is inverted then
+                    EXPECT_GT(kernel.volume_ratio(e, folded), 0.1) << c[0];
+                }
+                EXPECT_LT(kernel.least_volume_ratio(e, folded), 0.0) << c[0];
+            }
+        }
+    });
+}
+
 TEST(VirtualCentre, HasTheEnergyOfHemlInAnAffineState) {
     for_each_kernel_of_cells([](const auto& kernel, auto kind) {
         test::Random random(3);
