@@ -40,8 +40,8 @@ void SutureContact::tie(const physics::Model& model) {
 
 namespace {
 
-/// Names the present corners of the cell: an edit can have replaced some by copies. Returns false if
-/// the cell has lost one.
+/// Names the present corners of the cell: an edit can have replaced some by copies. Returns false
+/// if the cell has lost one.
 bool follow_corners(const topology::Mesh& mesh, topology::CellPoint& at) {
     const auto corners = mesh.corners(at.cell);
     for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k) {
@@ -83,9 +83,8 @@ void SutureContact::add_points(const physics::Model& model, const TissueSurface&
     first_segment_ = solver.size();
     solver.begin_thread({length_, suture_.stiffness, suture_.max_force, tension_ * dt});
     const auto add_end = [&](const topology::CellPoint& at, double sign) {
-        model.structure().embedding().for_each(at, [&](NodeId node, double weight) {
-            solver.add_weight(node, sign * weight);
-        });
+        model.structure().embedding().for_each(
+            at, [&](NodeId node, double weight) { solver.add_weight(node, sign * weight); });
     };
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         solver.begin_segment(points[i + 1] - points[i], stitches_[i].force * dt);

@@ -41,8 +41,7 @@ class Embedding {
     template <class Visit>
     void for_each(const topology::CellPoint& at, Visit visit) const {
         at.for_each([&](VertexId v, double of_vertex) {
-            (*this)[v].for_each(
-                [&](NodeId n, double weight) { visit(n, of_vertex * weight); });
+            (*this)[v].for_each([&](NodeId n, double weight) { visit(n, of_vertex * weight); });
         });
     }
     /// True if each vertex is the node with the same number, as before any division. Positions and

@@ -165,9 +165,8 @@ scenario::HandTool Session::checked(const AddTool& order) const {
     if (const auto* definition = order.definition.get<scenario::Table>())
         if (const scenario::Value* points = scenario::find(*definition, "points"))
             require_sensible(*points);
-    scenario::HandTool built =
-        scenario::build_hand_tool(order.name, order.definition, simulation_.scenario().folder,
-                                  simulation_.mesh(), why_no_contact_);
+    scenario::HandTool built = scenario::build_hand_tool(
+        order.name, order.definition, simulation_.scenario().folder, why_no_contact_);
     if (const auto extent = scenario::kind_of(built.shape).extent(built.shape)) {
         require_sensible(extent->radius);
         for (const Vec3& x : extent->points)

@@ -175,14 +175,13 @@ CutResult cut(const std::shared_ptr<PyMesh>& given, const py::sequence& planes,
     CutResult result;
     {
         const Unlocked unlocked;
-            topology::BuiltMesh built = topology::Mesh::build(*mesh.data);
-            const auto chosen = mode == "separate" ? cutting::CutMode::separate
-                                                   : cutting::CutMode::split;
-            result.report = cutting::cut_at_rest(built.mesh, tools, chosen);
-            MeshData cut = std::move(result.report.mesh);
-            cut.points_may_coincide |= mesh.data->points_may_coincide;
-            result.mesh = {std::make_shared<const MeshData>(std::move(cut)),
-                           result.report.warnings};
+        topology::BuiltMesh built = topology::Mesh::build(*mesh.data);
+        const auto chosen =
+            mode == "separate" ? cutting::CutMode::separate : cutting::CutMode::split;
+        result.report = cutting::cut_at_rest(built.mesh, tools, chosen);
+        MeshData cut = std::move(result.report.mesh);
+        cut.points_may_coincide |= mesh.data->points_may_coincide;
+        result.mesh = {std::make_shared<const MeshData>(std::move(cut)), result.report.warnings};
     }
     for (const std::string& warning : result.mesh.warnings) pass_warning(warning);
     return result;

@@ -42,7 +42,7 @@ sim::ToolId WorldDriver::add_tool(const std::string& name, const scenario::Value
         throw InputError("tool '" + name + "': the world has a tool of this name already");
     if (pose) require_sound("tool '" + name + "'", *pose);
     scenario::HandTool held =
-        scenario::build_hand_tool(name, definition, scenario_.folder, world_.mesh(),
+        scenario::build_hand_tool(name, definition, scenario_.folder,
                                   scenario::why_no_contact(scenario_.dynamics, scenario_.contact));
     if (pose && !cutting::traits_of(held.shape).has_pose)
         throw InputError("tool '" + name + "': a suture has no pose: its points are in the tissue");

@@ -29,6 +29,7 @@ std::optional<std::string> why_no_cell(const topology::MeshData& mesh, std::size
         case CellKind::pyramid:
             return why_no_cell_of<CellKind::pyramid>(mesh, c);
         case CellKind::tetrahedron:
+        case CellKind::polyhedron:
             break;
     }
     return std::nullopt;

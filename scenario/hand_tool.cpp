@@ -10,8 +10,7 @@
 namespace incise::scenario {
 
 HandTool build_hand_tool(const std::string& name, const Value& definition,
-                         const std::filesystem::path& folder, const topology::Mesh& mesh,
-                         const std::string& why_no_contact) {
+                         const std::filesystem::path& folder, const std::string& why_no_contact) {
     const std::string what = "tool '" + name + "'";
     HandTool tool;
     ToolSpec spec =

@@ -25,12 +25,10 @@ struct HandTool {
 /// @param name            of the tool, for messages
 /// @param definition      the table
 /// @param folder          to which names of surface files are relative
-/// @param mesh            the mesh that the tool is for
 /// @param why_no_contact  why tools cannot touch tissue; empty if they can: why_no_contact()
 /// Throws InputError with all problems, one a line, each of which begins with the name of the tool.
 HandTool build_hand_tool(const std::string& name, const Value& definition,
-                         const std::filesystem::path& folder, const topology::Mesh& mesh,
-                         const std::string& why_no_contact);
+                         const std::filesystem::path& folder, const std::string& why_no_contact);
 
 /// Returns why a run has no contact, for messages; empty if it has.
 std::string why_no_contact(const DynamicsSpec& dynamics, const contact::ContactSettings& contact);

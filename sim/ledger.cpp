@@ -24,7 +24,8 @@ Divided divided_elements(const topology::Mesh& mesh, const topology::ChangeSet& 
     Divided divided;
     for (const topology::CellRecord& record : changes.elements_added) {
         if (!record.parent.is_valid()) continue;
-        divided.least_altitude = std::min(divided.least_altitude, topology::min_altitude(mesh, record.id));
+        divided.least_altitude =
+            std::min(divided.least_altitude, topology::min_altitude(mesh, record.id));
         if (record.parent.index() < changes.element_capacity_before)
             parents.push_back(record.parent);
     }
@@ -32,7 +33,8 @@ Divided divided_elements(const topology::Mesh& mesh, const topology::ChangeSet& 
     parents.erase(std::unique(parents.begin(), parents.end()), parents.end());
     for (const CellId e : parents)
         if (mesh.is_alive(e))
-            divided.least_altitude = std::min(divided.least_altitude, topology::min_altitude(mesh, e));
+            divided.least_altitude =
+                std::min(divided.least_altitude, topology::min_altitude(mesh, e));
     divided.num_parents = parents.size();
     return divided;
 }

@@ -30,6 +30,8 @@ std::vector<CornerOrder> usual_orders(CellKind kind) {
                     {0, 1, 2, 4, 3, 5}};
         case CellKind::pyramid:
             return {{0, 1, 2, 3, 4}, {0, 1, 3, 2, 4}};  // the base by rows
+        case CellKind::polyhedron:
+            break;
     }
     return {};
 }

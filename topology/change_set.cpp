@@ -37,9 +37,8 @@ double rest_volume(const Mesh& mesh, const ChangeSet& changes, const CellRecord&
     }
     const auto change =
         std::ranges::lower_bound(changes.shape_changes, record.id, {}, &ShapeChange::cell);
-    const bool is_changed =
-        change != changes.shape_changes.end() && change->cell == record.id;
-    const CellShape& shape = !is_changed                       ? mesh.shape(record.id)
+    const bool is_changed = change != changes.shape_changes.end() && change->cell == record.id;
+    const CellShape& shape = !is_changed                    ? mesh.shape(record.id)
                              : change->from.num_faces() > 0 ? change->from
                                                             : change->to;
     return volume_of(shape, mesh.rest_positions());

@@ -53,8 +53,9 @@ class Ears {
     Vec3 normal_ = Vec3::Zero();
 };
 
-/// Calls visit(a, b, c) for the triangles of a face. A quadrilateral of a cell that is no polyhedron
-/// is divided from its first corner. The two sides of a polygon can be divided differently.
+/// Calls visit(a, b, c) for the triangles of a face. A quadrilateral of a cell that is no
+/// polyhedron is divided from its first corner. The two sides of a polygon can be divided
+/// differently.
 template <class Visit>
 void for_each_triangle(const Mesh& mesh, FaceId f, Visit visit) {
     const int size = mesh.face_size(f);

@@ -39,11 +39,11 @@ struct MeshData {
         0};  ///< number of cells + 1; cell c has corners [offsets[c], offsets[c+1])
     std::vector<std::int64_t> corners;  ///< point numbers, VTK order within a cell
     std::vector<int> regions;           ///< one a cell
-    /// The faces of polyhedra, one cell after the other: the number of faces, then for each face the
-    /// number of its corners and its corners, anticlockwise as seen from outside. Mesh::build() takes
-    /// no polyhedra.
+    /// The faces of polyhedra, one cell after the other: the number of faces, then for each face
+    /// the number of its corners and its corners, anticlockwise as seen from outside. Mesh::build()
+    /// takes no polyhedra.
     std::vector<std::int64_t> faces;
-    Carriers carriers;                  ///< empty for a body that was never cut
+    Carriers carriers;  ///< empty for a body that was never cut
     /// By cell, bit f for each face f, in the order of cell_kind.h, that is on a cut. Empty if no
     /// face is. See Mesh::is_on_cut(). Of a polyhedron, the first max_cut_faces have a bit.
     std::vector<std::int32_t> cut_faces;
@@ -72,8 +72,7 @@ struct MeshData {
             if (kinds[c] != CellKind::polyhedron) continue;
             visit(c, at);
             const std::int64_t count = faces[at++];
-            for (std::int64_t f = 0; f < count; ++f)
-                at += static_cast<std::size_t>(faces[at]) + 1;
+            for (std::int64_t f = 0; f < count; ++f) at += static_cast<std::size_t>(faces[at]) + 1;
         }
     }
 

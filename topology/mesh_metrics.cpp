@@ -187,9 +187,9 @@ ShapeMetrics measure_shapes(const Mesh& mesh) {
         shapes.min_altitude = std::min(shapes.min_altitude, min_altitude(mesh, e));
         for (int f = 0; f < mesh.num_faces(e); ++f)
             for (int p = 0; p < mesh.face_size({e, f}); ++p)
-                if (const auto [a, b] = std::pair(
-                        mesh.face_corner({e, f}, p),
-                        mesh.face_corner({e, f}, (p + 1) % mesh.face_size({e, f})));
+                if (const auto [a, b] =
+                        std::pair(mesh.face_corner({e, f}, p),
+                                  mesh.face_corner({e, f}, (p + 1) % mesh.face_size({e, f})));
                     a < b)
                     edges.emplace_back(a, b);
     }
@@ -197,8 +197,7 @@ ShapeMetrics measure_shapes(const Mesh& mesh) {
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     double sum = 0.0;
-    for (const auto& [a, b] : edges)
-        sum += (mesh.rest_position(b) - mesh.rest_position(a)).norm();
+    for (const auto& [a, b] : edges) sum += (mesh.rest_position(b) - mesh.rest_position(a)).norm();
     shapes.mean_edge_length = sum / static_cast<double>(edges.size());
     return shapes;
 }

@@ -73,7 +73,8 @@ bool is_cut_of_polyhedron(vtkUnstructuredGrid& grid, vtkIdType cell, int cut_fac
 bool is_cut(vtkUnstructuredGrid& grid, vtkIdType cell, int cut_faces,
             const std::vector<vtkIdType>& polygon) {
     if (cut_faces == 0) return false;
-    if (grid.GetCellType(cell) == VTK_POLYHEDRON) return is_cut_of_polyhedron(grid, cell, cut_faces, polygon);
+    if (grid.GetCellType(cell) == VTK_POLYHEDRON)
+        return is_cut_of_polyhedron(grid, cell, cut_faces, polygon);
     const auto kind = kind_of(grid.GetCellType(cell));
     if (!kind) return false;
     vtkNew<vtkIdList> corners;

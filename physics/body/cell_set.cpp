@@ -152,7 +152,8 @@ void FaceSet::apply(const Mesh& mesh, const ChangeSet& changes) {
 namespace {
 
 /// Returns the faces that a cell had before an edit, or has after it.
-topology::CellShape shape_of(const Mesh& mesh, const topology::ShapeChange& change, bool is_before) {
+topology::CellShape shape_of(const Mesh& mesh, const topology::ShapeChange& change,
+                             bool is_before) {
     const topology::CellKind kind = is_before ? change.kind_from : change.kind_to;
     if (kind == topology::CellKind::polyhedron) return is_before ? change.from : change.to;
     return mesh.shape_of_row(change.cell, kind);
@@ -177,8 +178,7 @@ bool lies_in(std::span<const VertexId> part, std::span<const VertexId> whole,
 
 // A part of a face has all of its corners in it, and was inside the body if the face was. The
 // members of a cell that changed its faces are found anew, in it and in the parts that it lost.
-void FaceSet::follow_shapes(const Mesh& mesh, const ChangeSet& changes,
-                            std::vector<FaceId>& born) {
+void FaceSet::follow_shapes(const Mesh& mesh, const ChangeSet& changes, std::vector<FaceId>& born) {
     if (changes.shape_changes.empty()) return;
     const auto parts = parts_by_ancestor(changes);
     Replaced replaced{changes.epoch_after, {}};
@@ -220,9 +220,8 @@ void FaceSet::go_back(const ChangeSet& changes) {
     const std::vector<Member> before = std::move(replaced_.back().members);
     replaced_.pop_back();
     std::erase_if(members_, [&](const Member& member) {
-        return std::ranges::any_of(before, [&](const Member& old) {
-            return old.face.cell == member.face.cell;
-        });
+        return std::ranges::any_of(
+            before, [&](const Member& old) { return old.face.cell == member.face.cell; });
     });
     members_.insert(members_.end(), before.begin(), before.end());
     std::ranges::sort(members_, {}, &Member::face);

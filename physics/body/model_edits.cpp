@@ -87,8 +87,11 @@ BodyEdit Model::apply(const topology::Mesh& mesh, const ChangeSet& changes) {
         throw InputError("model: this edit takes back another one: apply the BodyEdit that does");
     topology::FollowedEpoch(fragments().epoch()).advance(mesh, changes, "model");
     const Momenta removed = momenta_of_removed(changes);
-    BodyEdit edit{
-        changes, structure_.fragments_.apply(mesh, changes), {}, touched_vertices(mesh, changes), {}};
+    BodyEdit edit{changes,
+                  structure_.fragments_.apply(mesh, changes),
+                  {},
+                  touched_vertices(mesh, changes),
+                  {}};
     edit.touched_nodes = touched_nodes(fragments(), edit.physics);
     const bool keeps_momenta = edit.physics.has_joins();
     const Momenta before = keeps_momenta ? momenta_of(edit.touched_nodes) - removed : Momenta();

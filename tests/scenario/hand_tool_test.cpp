@@ -30,8 +30,7 @@ topology::Mesh mesh_of(topology::CellKind kind) {
 }
 
 HandTool build(const Value& definition, const std::string& why_no_contact = {}) {
-    return build_hand_tool("mine", definition, ".", mesh_of(topology::CellKind::tetrahedron),
-                           why_no_contact);
+    return build_hand_tool("mine", definition, ".", why_no_contact);
 }
 
 std::string refusal_of(const Value& definition, const std::string& why_no_contact = {}) {
@@ -70,8 +69,7 @@ TEST(HandTool, IsWhatTheKeysOfAScenarioSay) {
 
 TEST(HandTool, TakesTheModeThatSuitsTheMesh) {
     const Value blade = table({{"kind", text("blade")}, {"edge", edge}});
-    const HandTool made =
-        build_hand_tool("mine", blade, ".", mesh_of(topology::CellKind::hexahedron), "");
+    const HandTool made = build_hand_tool("mine", blade, ".", "");
     EXPECT_EQ(std::get<cutting::Blade>(made.shape).mode, cutting::CutMode::separate);
 }
 
@@ -94,7 +92,7 @@ TEST(HandTool, IsNamedOnceInEachMessage) {
     const Value no_edge = table({{"kind", text("blade")}, {"edge", list({point(0, 0, 0)})}});
     for (const Value& definition : {splitting, tough, of_file, no_edge, number(3.0)}) {
         try {
-            build_hand_tool("mine", definition, ".", hexahedra, "");
+            build_hand_tool("mine", definition, ".", "");
             ADD_FAILURE() << "accepted";
         } catch (const InputError& error) {
             EXPECT_TRUE(names_the_tool_once(error.what())) << error.what();

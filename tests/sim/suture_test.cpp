@@ -64,9 +64,8 @@ double way_of(World& world, const cutting::Suture& suture) {
     std::vector<Vec3> points;
     for (const Vec3& x : suture.points) {
         const auto rest = world.mesh().rest_positions();
-        points.push_back(topology::find_point(world.mesh(), rest, x, 1e-9)
-                             .value()
-                             .position(world.positions()));
+        points.push_back(
+            topology::find_point(world.mesh(), rest, x, 1e-9).value().position(world.positions()));
     }
     for (std::size_t i = 1; i < points.size(); ++i) sum += (points[i] - points[i - 1]).norm();
     return sum;

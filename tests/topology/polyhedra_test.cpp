@@ -148,7 +148,8 @@ bool random_operation(MeshEdit& edit, const Mesh& mesh, Random& random,
 template <class Check>
 void for_programs(int num_seeds, Check check) {
     for (const auto* family : small_families())
-        for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::num_cases(num_seeds)); ++seed) {
+        for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::num_cases(num_seeds));
+             ++seed) {
             SCOPED_TRACE(family->name + " " + std::to_string(seed));
             Mesh mesh = Mesh::build(family->data).mesh;
             Random random(seed);
