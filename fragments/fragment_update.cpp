@@ -94,6 +94,10 @@ void FragmentUpdate::follow_cells() {
             part(pair.a.cell);
             part(pair.b.cell);
         }
+    // A cell that keeps its volume can have what it has of each part of its carrier summed anew.
+    for (const topology::ShapeChange& change : changes_.shape_changes)
+        if (const CarrierId carrier = carrier_of[change.cell.index()]; carrier.is_valid())
+            touched_carriers_.push_back(carrier);
     make_sorted_set(parted_carriers_);
     touched_carriers_.insert(touched_carriers_.end(), parted_carriers_.begin(),
                              parted_carriers_.end());

@@ -28,11 +28,11 @@ struct BodyView {
     /// Of the last step, m, by node of the fragments. A solver may ask for forces at others.
     std::span<const Vec3> positions;
 
-    /// Returns the mass of an element of the mesh at each of its corners, kg.
-    double mass_at_corners(CellId cell) const {
+    /// Returns the mass of an element of the mesh at one of its corners, kg.
+    double mass_at_corner(CellId cell, std::size_t corner) const {
         const ElementId e = fragments.fragment_of_cell(cell);
         if (fragments.cells_of(e).size() == 1 && fragments.volume_share(e) == 1.0)
-            return elements.block_of(fragments, e).contributions(e).mass;
+            return elements.block_of(fragments, e).contributions(e).mass[corner];
         return elements.density(mesh.region(cell)) * topology::rest_volume(mesh, cell) /
                static_cast<double>(mesh.corners(cell).size());
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <map>
+#include <numeric>
 
 #include "incise/base/error.h"
 #include "incise/topology/face_triangles.h"
@@ -120,8 +121,10 @@ struct ShareFinder {
             const bool is_whole = part.num_cells == body.fragments.cells_of(e).size();
             const double volume =
                 is_whole ? body.elements.block_of(body.fragments, e).rest_volume(e) : part.volume;
-            for (const NodeId n : corners)
-                shares.add(n, volume / static_cast<double>(corners.size()));
+            const auto& masses = body.elements.block_of(body.fragments, e).contributions(e).mass;
+            const double sum = std::accumulate(masses.begin(), masses.end(), 0.0);
+            for (std::size_t k = 0; k < corners.size(); ++k)
+                shares.add(corners[k], volume * masses[k] / sum);
         }
         return std::move(shares).sums();
     }
@@ -221,7 +224,8 @@ double mass_at(const BodyView& body, VertexId n) {
     double mass = 0.0;
     std::vector<CellId> star;
     body.mesh.star(n, star);
-    for (const CellId cell : star) mass += body.mass_at_corners(cell);
+    for (const CellId cell : star)
+        mass += body.mass_at_corner(cell, static_cast<std::size_t>(body.mesh.corner_of(cell, n)));
     return mass;
 }
 

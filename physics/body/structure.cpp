@@ -41,8 +41,9 @@ void Structure::gather(NodeId n, double outer_stiffness) {
     fragments_.star(n, star_);
     for (const ElementId e : star_) {
         const NodalContributions& of_element = elements_.block_of(fragments_, e).contributions(e);
-        mass += of_element.mass;
-        stiffness += of_element.stiffness[static_cast<std::size_t>(fragments_.corner_of(e, n))];
+        const auto corner = static_cast<std::size_t>(fragments_.corner_of(e, n));
+        mass += of_element.mass[corner];
+        stiffness += of_element.stiffness[corner];
     }
     masses_[n.index()] = mass;
     stable_step_.set(n.index(), stiffness + outer_stiffness, mass);
@@ -70,8 +71,9 @@ std::vector<double> Structure::mesh_masses() const {
     const BodyView view{mesh_, fragments_, elements_, masses_, {}};
     std::vector<double> masses(mesh_.node_capacity(), 0.0);
     for (const CellId e : mesh_.elements()) {
-        const double mass = view.mass_at_corners(e);
-        for (const VertexId n : mesh_.corners(e)) masses[n.index()] += mass;
+        const auto corners = mesh_.corners(e);
+        for (std::size_t k = 0; k < corners.size(); ++k)
+            masses[corners[k].index()] += view.mass_at_corner(e, k);
     }
     return masses;
 }
@@ -122,9 +124,10 @@ double Structure::stable_step(const State& state, std::span<const NodeId> nodes)
 
 double Structure::element_stable_step(ElementId e) const {
     const NodalContributions& of_element = elements_.block_of(fragments_, e).contributions(e);
-    const double stiffness =
-        *std::max_element(of_element.stiffness.begin(), of_element.stiffness.end());
-    return 2.0 / std::sqrt(stiffness / of_element.mass);
+    double highest = 0.0;
+    for (std::size_t k = 0; k < fragments_.corners(e).size(); ++k)
+        highest = std::max(highest, of_element.stiffness[k] / of_element.mass[k]);
+    return 2.0 / std::sqrt(highest);
 }
 
 }  // namespace incise::physics

@@ -24,7 +24,7 @@ namespace incise::physics {
 /// The constant contributions of one element to its corners. They depend only on the rest shape,
 /// the share and the material.
 struct NodalContributions {
-    double mass = 0.0;                  ///< kg, the same to each corner
+    std::array<double, 8> mass{};       ///< kg, by corner
     std::array<double, 8> stiffness{};  ///< N/m, by corner, to the bound of stable_step.h
 };
 
@@ -34,7 +34,10 @@ struct ElementInput {
     std::span<const Vec3> rest_positions;  ///< m, by node id
     Vec3 fibre = Vec3::Zero();  ///< direction of the fibres at rest, of unit length; ignored by a
                                 ///< law without fibres
-    double share = 1.0;  ///< scales mass, stiffness and energy; see fragments::FragmentMesh::share
+    double share = 1.0;  ///< scales mass, stiffness and energy; see FragmentMesh::volume_share
+    /// How much of each tetrahedron of a cell is material, see FragmentMesh::part_shares. Empty: as
+    /// much of each. Ignored by kernels that do not take it.
+    std::span<const double> part_shares = {};
 };
 
 /// A trial state at the end of a step of an implicit solver or of statics.

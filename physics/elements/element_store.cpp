@@ -53,28 +53,15 @@ std::shared_ptr<ElementBlock> make_block(const Material& material, Precision pre
                                                         material.density);
 }
 
-template <CellKind kind>
-std::optional<std::string> why_no_centre_cell_of(const FragmentMesh& fragments, ElementId e) {
-    typename VirtualCentreKernel<kind>::Corners corners;
-    for (std::size_t k = 0; k < corners.size(); ++k)
-        corners[k] = fragments.rest_position(fragments.corners(e)[k]);
-    return VirtualCentreKernel<kind>::why_no_cell(corners);
-}
-
 /// See VirtualCentreKernel::why_no_cell.
 std::optional<std::string> why_no_centre_cell(const FragmentMesh& fragments, ElementId e) {
-    switch (fragments.kind(e)) {
-        case CellKind::hexahedron:
-            return why_no_centre_cell_of<CellKind::hexahedron>(fragments, e);
-        case CellKind::wedge:
-            return why_no_centre_cell_of<CellKind::wedge>(fragments, e);
-        case CellKind::pyramid:
-            return why_no_centre_cell_of<CellKind::pyramid>(fragments, e);
-        case CellKind::tetrahedron:
-        case CellKind::polyhedron:
-            break;
-    }
-    return {};
+    return fragments::with_division(
+        fragments.kind(e), [&]<CellKind kind>(fragments::CentreDivision<kind>) {
+            typename VirtualCentreKernel<kind>::Corners corners;
+            for (std::size_t k = 0; k < corners.size(); ++k)
+                corners[k] = fragments.rest_position(fragments.corners(e)[k]);
+            return VirtualCentreKernel<kind>::why_no_cell(corners);
+        });
 }
 
 /// Calls visit(range, begin, end) for each range of node ids that has some of `nodes`. These are
@@ -185,7 +172,8 @@ std::size_t ElementStore::block_index(ElementId e, int region, CellKind kind) co
 
 ElementInput ElementStore::input_of(const FragmentMesh& fragments, ElementId e) const {
     return {fragments.corners(e), fragments.rest_positions(),
-            fibres_ ? (*fibres_)[e] : Vec3(Vec3::Zero()), fragments.volume_share(e)};
+            fibres_ ? (*fibres_)[e] : Vec3(Vec3::Zero()), fragments.volume_share(e),
+            fragments.part_shares(e)};
 }
 
 void ElementStore::insert(const FragmentMesh& fragments, ElementId e) {

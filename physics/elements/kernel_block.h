@@ -23,6 +23,19 @@ concept TakesFibre = requires(const Kernel& kernel, typename Kernel::Corners X, 
     kernel.precompute(X, fibre);
 };
 
+/// A kernel whose elements have tetrahedra of which a fragment has shares.
+template <class Kernel>
+concept TakesPartShares = requires(const Kernel& kernel, typename Kernel::Corners X,
+                                   std::span<const double> shares) {
+    kernel.precompute(X, Vec3(), shares);
+};
+
+/// A kernel whose elements do not give the same mass to each corner.
+template <class Kernel>
+concept HasMassFractions = requires(const Kernel& kernel, const typename Kernel::Element& e) {
+    kernel.mass_fractions(e);
+};
+
 /// A kernel whose elements can be inverted in a part alone, such as VirtualCentreKernel.
 template <class Kernel>
 concept HasLeastVolumeRatio = requires(const Kernel& kernel, const typename Kernel::Element& e,
@@ -382,12 +395,28 @@ class KernelBlock final : public ElementBlock {
             row.nodes[k] = static_cast<std::uint32_t>(input.corners[k].index());
             X[k] = input.rest_positions[input.corners[k].index()];
         }
-        if constexpr (TakesFibre<Kernel>)
+        if constexpr (TakesPartShares<Kernel>) {
+            // The shares of the tetrahedra over that of the whole, which the block applies.
+            std::array<double, Kernel::num_parts> relative;
+            assert(input.part_shares.empty() || input.part_shares.size() == relative.size());
+            for (std::size_t t = 0; t < input.part_shares.size(); ++t)
+                relative[t] = input.part_shares[t] / input.share;
+            row.rest = kernel_.precompute(X, input.fibre,
+                                          std::span(relative).first(input.part_shares.size()));
+        } else if constexpr (TakesFibre<Kernel>) {
             row.rest = kernel_.precompute(X, input.fibre);
-        else
+        } else {
             row.rest = kernel_.precompute(X);
-        row.contributions.mass =
-            row.share * (density_ * row.rest.volume / static_cast<double>(num_corners));
+        }
+        if constexpr (HasMassFractions<Kernel>) {
+            const auto fractions = kernel_.mass_fractions(row.rest);
+            for (std::size_t k = 0; k < num_corners; ++k)
+                row.contributions.mass[k] = row.share * density_ * row.rest.volume * fractions[k];
+        } else {
+            std::fill_n(
+                row.contributions.mass.begin(), num_corners,
+                row.share * (density_ * row.rest.volume / static_cast<double>(num_corners)));
+        }
         const auto stiffness = kernel_.stiffness_bounds(row.rest, X);
         for (std::size_t k = 0; k < num_corners; ++k)
             row.contributions.stiffness[k] = row.share * stiffness[k];

@@ -60,16 +60,25 @@ void SimdCentreElements<kind>::assign_groups(std::size_t num_elements, bool with
     std::fill(unused.per_volume, unused.per_volume + size, 1.0);
     groups_.assign((num_elements + size - 1) / size, unused);
     fibres_.assign(with_fibres ? groups_.size() : 0, CentreFibres<kind>{});
+    shares_.clear();
 }
 
 template <CellKind kind>
-void SimdCentreElements<kind>::set_cell(std::size_t i, const Cell& cell,
-                                        [[maybe_unused]] double share) {
-    assert(share == 1.0);  // these cells are not divided
+void SimdCentreElements<kind>::set_cell(std::size_t i, const Cell& cell, double share) {
     const std::size_t g = i % groups_.size(), lane = i / groups_.size();
-    groups_[g].per_volume[lane] = 1.0 / cell.volume;
+    if (shares_.empty() && !(cell.is_whole && share == 1.0)) {
+        shares_.resize(groups_.size());
+        for (CentreShares<kind>& of_group : shares_)
+            for (auto& of_part : of_group.parts) std::ranges::fill(of_part, 1.0);
+    }
+    groups_[g].per_volume[lane] = 1.0 / (share * cell.volume);
     for (std::size_t t = 0; t < num_parts; ++t) {
-        set_metric(groups_[g].parts[t], lane, cell.inverse_edges[t], cell.volumes[t]);
+        const double per_volume = 6.0 * cell.inverse_edges[t].determinant();
+        const double volume = cell.is_whole ? cell.volumes[t] : 1.0 / per_volume;
+        set_metric(groups_[g].parts[t], lane, cell.inverse_edges[t], volume);
+        if (!shares_.empty())
+            shares_[g].parts[t][lane] =
+                share * (cell.is_whole ? 1.0 : cell.volumes[t] * per_volume);
         if (fibres_.empty()) continue;
         const Vec3 u = cell.inverse_edges[t] * cell.fibre;
         for (int k = 0; k < 3; ++k) fibres_[g].parts[t].u[k][lane] = u[k];
@@ -81,7 +90,8 @@ void SimdCentreElements<kind>::add_forces_of(const Law& law, double J0,
                                              const LocalVector* positions,
                                              LocalVector* forces) const {
     static AddCentreForces<kind>* const add = centre_forces_for<kind>(processor());
-    add(law, J0, groups_, fibres_.empty() ? nullptr : fibres_.data(), positions, forces);
+    add(law, J0, groups_, fibres_.empty() ? nullptr : fibres_.data(),
+        shares_.empty() ? nullptr : shares_.data(), positions, forces);
 }
 
 template <CellKind kind>
@@ -90,8 +100,8 @@ void SimdCentreElements<kind>::set_stiffening_of(const Law& law, double J0,
                                                  std::span<double> factors) const {
     static CentreStiffening<kind>* const compute = centre_stiffening_for<kind>(processor());
     const auto of_groups = room_for<ElementFactors<double>>(groups_.size());
-    compute(law, J0, groups_, fibres_.empty() ? nullptr : fibres_.data(), positions,
-            of_groups.data());
+    compute(law, J0, groups_, fibres_.empty() ? nullptr : fibres_.data(),
+            shares_.empty() ? nullptr : shares_.data(), positions, of_groups.data());
     std::size_t i = 0;
     for (std::size_t lane = 0; i < factors.size(); ++lane)
         for (std::size_t g = 0; g < of_groups.size() && i < factors.size(); ++g)

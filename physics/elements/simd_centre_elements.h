@@ -32,6 +32,13 @@ struct CentreFibres {
     FibreGroup<double> parts[CentreDivision<kind>::num_parts];
 };
 
+/// How much of each tetrahedron of a group of cells is material.
+template <topology::CellKind kind>
+struct CentreShares {
+    static constexpr std::size_t size = CentreGroup<kind>::size;
+    alignas(64) double parts[CentreDivision<kind>::num_parts][size];
+};
+
 /// The cells of a block. Cells are numbered from 0 in the order of the block. All results are the
 /// same bit for bit on every processor.
 template <topology::CellKind kind>
@@ -45,7 +52,7 @@ class SimdCentreElements {
     /// Sets the values of cell `i`, except for its nodes.
     template <class Element>
     void set(std::size_t i, const Element& e, double share) {
-        set_cell(i, {e.volumes, e.inverse_edges, e.volume, e.fibre}, share);
+        set_cell(i, {e.volumes, e.inverse_edges, e.volume, e.fibre, e.is_whole}, share);
     }
     /// Sets the nodes of all cells; see set_offsets_of_lanes().
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare) {
@@ -76,6 +83,7 @@ class SimdCentreElements {
 
     std::span<const CentreGroup<kind>> groups() const { return groups_; }
     std::span<const CentreFibres<kind>> fibres() const { return fibres_; }
+    std::span<const CentreShares<kind>> shares() const { return shares_; }
 
   private:
     static constexpr std::size_t num_parts = CentreDivision<kind>::num_parts;
@@ -84,6 +92,7 @@ class SimdCentreElements {
         const std::array<Eigen::Matrix3d, num_parts>& inverse_edges;
         double volume;
         const Vec3& fibre;
+        bool is_whole;
     };
     void assign_groups(std::size_t num_elements, bool with_fibres);
     void set_cell(std::size_t i, const Cell& cell, double share);
@@ -94,14 +103,15 @@ class SimdCentreElements {
 
     std::vector<CentreGroup<kind>> groups_;
     std::vector<CentreFibres<kind>> fibres_;  // empty for a law without fibres
+    std::vector<CentreShares<kind>> shares_;  // empty if all are 1
 };
 
-/// Adds the forces of groups. `fibres` is null for a law without fibres.
+/// Adds the forces of groups. `fibres` is null for a law without fibres, `shares` if all are 1.
 template <topology::CellKind kind>
 using AddCentreForces = void(const Law& law, double inversion_threshold,
                              std::span<const CentreGroup<kind>> groups,
-                             const CentreFibres<kind>* fibres, const LocalVector* positions,
-                             LocalVector* forces);
+                             const CentreFibres<kind>* fibres, const CentreShares<kind>* shares,
+                             const LocalVector* positions, LocalVector* forces);
 /// Returns the function that SimdCentreElements::add_forces calls on a processor.
 template <topology::CellKind kind>
 AddCentreForces<kind>* centre_forces_for(Processor processor);
@@ -109,8 +119,8 @@ AddCentreForces<kind>* centre_forces_for(Processor processor);
 template <topology::CellKind kind>
 using CentreStiffening = void(const Law& law, double inversion_threshold,
                               std::span<const CentreGroup<kind>> groups,
-                              const CentreFibres<kind>* fibres, const LocalVector* positions,
-                              ElementFactors<double>* factors);
+                              const CentreFibres<kind>* fibres, const CentreShares<kind>* shares,
+                              const LocalVector* positions, ElementFactors<double>* factors);
 /// Returns the function that SimdCentreElements::set_stiffening calls on a processor.
 template <topology::CellKind kind>
 CentreStiffening<kind>* centre_stiffening_for(Processor processor);

@@ -2,6 +2,8 @@
 #include "incise/physics/elements/virtual_centre_kernel.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <limits>
 
 #include "incise/base/error.h"
@@ -26,47 +28,74 @@ std::optional<std::string> VirtualCentreKernel<kind>::why_no_cell(const Corners&
 
 template <CellKind kind>
 typename VirtualCentreKernel<kind>::Element VirtualCentreKernel<kind>::precompute(
-    const Corners& X, const Vec3& fibre) const {
+    const Corners& X, const Vec3& fibre, std::span<const double> part_shares) const {
+    assert(part_shares.empty() || part_shares.size() == num_parts);
     const auto at = Division::points(X);
     Element e;
     e.rest = X;
     e.volume = 0.0;
+    e.is_whole = std::ranges::all_of(part_shares, [](double share) { return share == 1.0; });
     if (has_fibres(law)) e.fibre = fibre;
     for (std::size_t t = 0; t < num_parts; ++t) {
         const auto p = Division::parts()[t];
         const LinkElement part = link_element({at[p[0]], at[p[1]], at[p[2]], at[p[3]]});
-        e.volumes[t] = part.volume;
+        e.volumes[t] = part_shares.empty() ? part.volume : part_shares[t] * part.volume;
         e.inverse_edges[t] = part.inverse_edges;
-        e.volume += part.volume;
+        e.volume += e.volumes[t];
     }
     return e;
 }
 
 template <CellKind kind>
+std::array<double, VirtualCentreKernel<kind>::num_corners>
+VirtualCentreKernel<kind>::mass_fractions(const Element& e) const {
+    std::array<double, Division::num_points> of_points{};
+    for (std::size_t t = 0; t < num_parts; ++t)
+        for (const std::size_t p : CellState<kind>::parts[t])
+            of_points[p] += 0.25 * e.volumes[t] / e.volume;
+    return Division::gathered(of_points);
+}
+
+namespace {
+
+/// Returns current over rest volume of tetrahedron `t` of a cell with these points.
+template <CellKind kind>
+double ratio_of_part(const typename VirtualCentreKernel<kind>::Element& e,
+                     const typename CentreDivision<kind>::Points& at, std::size_t t) {
+    const auto& p = CellState<kind>::parts[t];
+    return 6.0 * topology::tetrahedron_volume(at[p[0]], at[p[1]], at[p[2]], at[p[3]]) *
+           e.inverse_edges[t].determinant();
+}
+
+}  // namespace
+
+template <CellKind kind>
 double VirtualCentreKernel<kind>::volume_ratio(const Element& e, const Corners& x) const {
     const auto at = Division::points(x);
     double volume = 0.0;
-    for (const auto& p : Division::parts())
-        volume += topology::tetrahedron_volume(at[p[0]], at[p[1]], at[p[2]], at[p[3]]);
+    for (std::size_t t = 0; t < num_parts; ++t)
+        if (e.volumes[t] > 0.0) volume += e.volumes[t] * ratio_of_part<kind>(e, at, t);
     return volume / e.volume;
 }
 
 template <CellKind kind>
 double VirtualCentreKernel<kind>::least_volume_ratio(const Element& e, const Corners& x) const {
     double least = std::numeric_limits<double>::infinity();
+    std::array<bool, Division::num_points> has_gap{};
     const auto at = Division::points(x);
-    for (std::size_t t = 0; t < num_parts; ++t) {
-        const auto& p = CellState<kind>::parts[t];
-        const double now = topology::tetrahedron_volume(at[p[0]], at[p[1]], at[p[2]], at[p[3]]);
-        least = std::min(least, now / e.volumes[t]);
-    }
+    for (std::size_t t = 0; t < num_parts; ++t)
+        if (e.volumes[t] > 0.0)
+            least = std::min(least, ratio_of_part<kind>(e, at, t));
+        else
+            for (const std::size_t p : CellState<kind>::parts[t]) has_gap[p] = true;
     constexpr double flat = 1e-6;  // of the volume of the cell
     static constexpr auto corner_parts = Division::corner_parts();
     for (const auto& c : corner_parts) {
         const auto volume_in = [&](const Corners& of) {
             return topology::tetrahedron_volume(of[c[0]], of[c[1]], of[c[2]], of[c[3]]);
         };
-        if (const double at_rest = volume_in(e.rest); at_rest > flat * e.volume)
+        const double at_rest = volume_in(e.rest);
+        if (!has_gap[c[0]] && at_rest > flat * e.volume)
             least = std::min(least, volume_in(x) / at_rest);
     }
     return least;
@@ -258,8 +287,17 @@ VirtualCentreKernel<kind>::stiffness_bounds(const Element& e, const Corners&) co
     // highest modulus is that of shear, which grows by itself.
     constexpr double growth_margin = 1.2;
     const double mu = rest_mu(law), of_shear = 2.0 * mu / (rest_lambda(law) + 2.0 * mu);
+    const auto masses = mass_fractions(e);
+    Tangent scaled = rest_tangent(e);
+    for (std::size_t k = 0; k < num_corners; ++k) {
+        const double by = 1.0 / std::sqrt(masses[k]);
+        scaled.template middleRows<3>(static_cast<Eigen::Index>(3 * k)) *= by;
+        scaled.template middleCols<3>(static_cast<Eigen::Index>(3 * k)) *= by;
+    }
+    const double highest =
+        growth_margin * std::max(1.0, of_shear) * spectrum(scaled).values.maxCoeff();
     std::array<double, num_corners> s;
-    s.fill(growth_margin * std::max(1.0, of_shear) * spectrum(rest_tangent(e)).values.maxCoeff());
+    for (std::size_t k = 0; k < num_corners; ++k) s[k] = highest * masses[k];
     return s;
 }
 
@@ -267,9 +305,12 @@ template <CellKind kind>
 double VirtualCentreKernel<kind>::stiffening(const Element& e, const Corners& x) const {
     const CellState<kind> state(*this, e, x);
     double largest = 0.0;
-    for (const PartState& part : state.of_part)
+    for (std::size_t t = 0; t < num_parts; ++t) {
+        if (e.volumes[t] == 0.0) continue;
+        const PartState& part = state.of_part[t];
         for (const auto& strain : {part.mean.strain, deformation_of(part.H, e.fibre).strain})
             largest = std::max(largest, physics::stiffening(law, strain, inversion_threshold));
+    }
     return largest;
 }
 

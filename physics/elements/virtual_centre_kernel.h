@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "incise/base/types.h"
@@ -37,10 +38,11 @@ struct VirtualCentreKernel {
     struct Element {
         double volume;                              ///< m3, of all tetrahedra
         Corners rest;                               ///< m
-        std::array<double, num_parts> volumes;      ///< of each tetrahedron, m3
+        std::array<double, num_parts> volumes;      ///< of the material in each, m3
         std::array<Mat3, num_parts> inverse_edges;  ///< LinkElement::inverse_edges of each, 1/m
         /// a0, the direction of the fibres at rest, of unit length; zero for a law without fibres.
         Vec3 fibre = Vec3::Zero();
+        bool is_whole = true;  ///< all shares of its tetrahedra are 1
     };
 
     Law law;
@@ -54,14 +56,21 @@ struct VirtualCentreKernel {
     /// @param X      corners at rest, m
     /// @param fibre  direction of the fibres at rest, of unit length; ignored by a law without
     ///               fibres
-    /// @pre  why_no_cell() returns nothing
-    Element precompute(const Corners& X, const Vec3& fibre = Vec3::Zero()) const;
+    /// @param part_shares  of each tetrahedron, how much of it is material; empty: all of it
+    /// @pre  why_no_cell() returns nothing; not all shares are zero
+    Element precompute(const Corners& X, const Vec3& fibre = Vec3::Zero(),
+                       std::span<const double> part_shares = {}) const;
 
-    /// Returns current over rest volume; negative for an inverted cell.
+    /// Returns for each corner which part of the mass of the cell it has; they sum to 1. A quarter
+    /// of the mass of a tetrahedron is at each of its points. That of a centre goes to the corners
+    /// that it is the mean of. So the centre of mass is exact, and each corner has mass.
+    std::array<double, num_corners> mass_fractions(const Element& e) const;
+    /// Returns current over rest volume of the material; negative for an inverted cell.
     double volume_ratio(const Element& e, const Corners& x) const;
     /// Returns the least ratio of current over rest volume in the cell: of its tetrahedra, and of
     /// those that the edges at each corner make. It is not positive for a cell that is folded
-    /// inside, whatever volume_ratio() is. Corners that are flat at rest do not count.
+    /// inside, whatever volume_ratio() is. Tetrahedra without material do not count, nor corners
+    /// at them, nor corners that are flat at rest.
     double least_volume_ratio(const Element& e, const Corners& x) const;
     /// Returns the highest P-wave modulus at rest times the rest volume, J.
     double stiffness_energy(const Element& e) const;
@@ -81,9 +90,9 @@ struct VirtualCentreKernel {
     Tangent rest_tangent(const Element& e) const;
 
     /// Returns the contribution of the cell to the bound on the stiffness of each corner at rest
-    /// (stable_step.h), N/m: the largest eigenvalue of rest_tangent(), with a margin of a fifth for
-    /// strained states, for each of them. The sum of cells is then at most the diagonal matrix of
-    /// the sums of bounds (I. Fried, 1972).
+    /// (stable_step.h), N/m: its mass times the largest eigenvalue of M^-1 rest_tangent(), with a
+    /// margin of a fifth for strained states. M has the masses of mass_fractions(). The sum of
+    /// cells is then at most the diagonal matrix of the sums of bounds (I. Fried, 1972).
     std::array<double, num_corners> stiffness_bounds(const Element& e, const Corners& X) const;
     /// Returns the factor by which the bounds grow from rest to the corners x, m: the largest one
     /// of HemlKernel::stiffening of its tetrahedra, with their own volume and with the mean one.

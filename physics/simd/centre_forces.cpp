@@ -32,11 +32,11 @@ template <CellKind kind>
 // f on scaled edges v, the work of the scale is f . v per ln s: it acts on the two volume ratios.
 template <CellKind kind, class Law>
 void add_forces_of(const Law& law, double J0, const CentreGroup<kind>& group,
-                   const CentreFibres<kind>* fibres, std::size_t first,
-                   const LocalVector* positions, LocalVector* forces) {
+                   const CentreFibres<kind>* fibres, const CentreShares<kind>* shares,
+                   std::size_t first, const LocalVector* positions, LocalVector* forces) {
     using Division = CentreDivision<kind>;
     constexpr auto& parts = CellLanes<kind>::parts;
-    const CellLanes<kind> cells(group, first, positions);
+    const CellLanes<kind> cells(group, shares, first, positions);
     const Growth of_mean(cells.mean, J0);
     std::array<CellVectors, Division::num_points> f;
     f.fill({0.0, 0.0, 0.0});
@@ -55,6 +55,8 @@ void add_forces_of(const Law& law, double J0, const CentreGroup<kind>& group,
         for (CellVectors& edge : v) edge = s * edge;
         LinkVectors<double> on_edges =
             link_forces(law, J0, group.parts[t], fibres ? &fibres->parts[t] : nullptr, first, v);
+        if (shares)
+            for (CellVectors& force : on_edges) force = cells.share(t) * force;
         const CellNumbers of_part =
             dot(on_edges[0], v[0]) + dot(on_edges[1], v[1]) + dot(on_edges[2], v[2]);
         work += of_part;
@@ -67,7 +69,7 @@ void add_forces_of(const Law& law, double J0, const CentreGroup<kind>& group,
     for (std::size_t t = 0; t < Division::num_parts; ++t) {
         const auto v = cells.edges(t);
         const CellNumbers along =
-            on_mean -
+            on_mean * cells.share(t) -
             works[t] * CellNumbers::load(group.parts[t].per_six_volumes + first) * (1.0 / 3.0);
         add(t, {along * cross(v[1], v[2]), along * cross(v[2], v[0]), along * cross(v[0], v[1])});
     }
@@ -79,15 +81,15 @@ void add_forces_of(const Law& law, double J0, const CentreGroup<kind>& group,
 
 template <CellKind kind>
 void add_forces(const Law& law, double J0, std::span<const CentreGroup<kind>> groups,
-                const CentreFibres<kind>* fibres, const LocalVector* positions,
-                LocalVector* forces) {
+                const CentreFibres<kind>* fibres, const CentreShares<kind>* shares,
+                const LocalVector* positions, LocalVector* forces) {
     std::visit(
         [&](const auto& l) {
             for (std::size_t g = 0; g < groups.size(); ++g)
                 for (std::size_t first = 0; first < CentreGroup<kind>::size;
                      first += num_lanes<double>)
-                    add_forces_of<kind>(l, J0, groups[g], fibres ? fibres + g : nullptr, first,
-                                        positions, forces);
+                    add_forces_of<kind>(l, J0, groups[g], fibres ? fibres + g : nullptr,
+                                        shares ? shares + g : nullptr, first, positions, forces);
         },
         law);
 }
@@ -97,22 +99,25 @@ void add_forces(const Law& law, double J0, std::span<const CentreGroup<kind>> gr
 void add_centre_forces(const Law& law, double J0,
                        std::span<const CentreGroup<CellKind::hexahedron>> groups,
                        const CentreFibres<CellKind::hexahedron>* fibres,
+                       const CentreShares<CellKind::hexahedron>* shares,
                        const LocalVector* positions, LocalVector* forces) {
-    add_forces(law, J0, groups, fibres, positions, forces);
+    add_forces(law, J0, groups, fibres, shares, positions, forces);
 }
 
 void add_centre_forces(const Law& law, double J0,
                        std::span<const CentreGroup<CellKind::wedge>> groups,
-                       const CentreFibres<CellKind::wedge>* fibres, const LocalVector* positions,
+                       const CentreFibres<CellKind::wedge>* fibres,
+                       const CentreShares<CellKind::wedge>* shares, const LocalVector* positions,
                        LocalVector* forces) {
-    add_forces(law, J0, groups, fibres, positions, forces);
+    add_forces(law, J0, groups, fibres, shares, positions, forces);
 }
 
 void add_centre_forces(const Law& law, double J0,
                        std::span<const CentreGroup<CellKind::pyramid>> groups,
-                       const CentreFibres<CellKind::pyramid>* fibres, const LocalVector* positions,
+                       const CentreFibres<CellKind::pyramid>* fibres,
+                       const CentreShares<CellKind::pyramid>* shares, const LocalVector* positions,
                        LocalVector* forces) {
-    add_forces(law, J0, groups, fibres, positions, forces);
+    add_forces(law, J0, groups, fibres, shares, positions, forces);
 }
 
 }  // namespace incise::physics::INCISE_PROCESSOR

@@ -46,12 +46,16 @@ struct CellLanes {
     using Division = CentreDivision<kind>;
     static constexpr auto parts = Division::parts();
 
+    const CentreShares<kind>* shares;  ///< of the group; null: all are 1
+    std::size_t first;
     std::array<CellVectors, Division::num_points> x;  ///< relative to corner 0, m
     std::array<CellNumbers, Division::num_parts> ratios;
     CellNumbers mean = 0.0;
 
-    [[gnu::always_inline]] inline CellLanes(const CentreGroup<kind>& group, std::size_t first,
-                                            const LocalVector* positions) {
+    [[gnu::always_inline]] inline CellLanes(const CentreGroup<kind>& group,
+                                            const CentreShares<kind>* of_group,
+                                            std::size_t first_lane, const LocalVector* positions)
+        : shares(of_group), first(first_lane) {
         x[0] = {0.0, 0.0, 0.0};
         const auto corners = gather_edges<double>(positions, group.offsets, first);
         std::copy(corners.begin(), corners.end(), x.begin() + 1);
@@ -62,8 +66,15 @@ struct CellLanes {
             const MetricGroup<double>& part = group.parts[t];
             ratios[t] =
                 dot(cross(v[0], v[1]), v[2]) * CellNumbers::load(part.per_six_volumes + first);
-            mean += CellNumbers::load(part.volume + first) * per_volume * ratios[t];
+            CellNumbers of_volume = CellNumbers::load(part.volume + first) * per_volume;
+            if (shares) of_volume *= share(t);
+            mean += of_volume * ratios[t];
         }
+    }
+
+    /// Returns how much of a tetrahedron is material.
+    [[gnu::always_inline]] inline CellNumbers share(std::size_t t) const {
+        return shares ? CellNumbers::load(shares->parts[t] + first) : CellNumbers(1.0);
     }
 
     /// Returns the edges of a tetrahedron from its first point.
