@@ -64,7 +64,9 @@ void FragmentParts::add(CarrierId carrier, std::span<const CellId> cells, double
     CarrierPart& part =
         *new (memory_.allocate(sizeof(CarrierPart), alignof(CarrierPart))) CarrierPart(memory_);
     part.carrier = carrier;
-    part.volume = volume;
+    // A cut can leave flat cells whose volume is negative to rounding.
+    constexpr double least_share = 1e-12;
+    part.volume = std::max(volume, least_share * fragments_.volumes_[carrier.index()]);
     part.master = index;
     part.is_light = volume < fragments_.light_share_ * fragments_.volumes_[carrier.index()];
     part.is_constrained = part.is_light && is_constrained(cells);

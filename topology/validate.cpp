@@ -29,7 +29,7 @@ const char* fault_of_polyhedron(const Mesh& mesh, CellId e) {
         return "is no ball";
     Box box;
     for (const VertexId n : mesh.corners(e)) box.extend(mesh.rest_position(n));
-    constexpr double flatness = 1e-6;  // of cells that a cut leaves beside nodes and faces
+    constexpr double flatness = 1e-4;  // of cells that a cut leaves beside nodes and faces
     if (!(rest_volume(mesh, e) >= -flatness * std::pow(box.diagonal().norm(), 3)))
         return "has a negative volume at rest";
     return nullptr;
