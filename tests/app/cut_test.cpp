@@ -272,7 +272,7 @@ TEST_F(Cut, RemovesWhatShapesCover) {
 }
 
 TEST_F(Cut, SeparatesHexahedraAlongTheirFaces) {
-    const auto plane = cut("--plane 0.55,0,0,1,0,0", "bricks.vtu");
+    const auto plane = cut("--mode separate --plane 0.55,0,0,1,0,0", "bricks.vtu");
     EXPECT_EQ(plane["mode"], "separate");
     EXPECT_TRUE(plane["snap"].is_null());
     EXPECT_EQ(plane["volume"]["after"], 1.0);
@@ -287,11 +287,12 @@ TEST_F(Cut, SeparatesHexahedraAlongTheirFaces) {
     EXPECT_TRUE(plane["stable_step_ratio"].is_null());
     EXPECT_TRUE(plane["microseconds_per_crossed_element"].is_null());
 
-    const auto surface = cut("--surface inner.obj", "bricks.vtu");
+    const auto surface = cut("--mode separate --surface inner.obj", "bricks.vtu");
     expect_volumes(surface, {0.875, 0.125}, 1e-15);  // the inner bricks
     EXPECT_NEAR(surface["surface_distance"]["max"].get<double>(), 0.05 * std::sqrt(3.0), 0.037);
 
-    const auto sweep = cut("--sweep '0.55,-1,2;0.55,2,2 | 0.55,-1,-1;0.55,2,-1'", "bricks.vtu");
+    const auto sweep = cut(
+        "--mode separate --sweep '0.55,-1,2;0.55,2,2 | 0.55,-1,-1;0.55,2,-1'", "bricks.vtu");
     expect_volumes(sweep, {0.5, 0.5}, 1e-15);
     EXPECT_NEAR(sweep["surface_distance"]["max"].get<double>(), 0.05, 1e-15);
 }
@@ -392,14 +393,24 @@ TEST_F(Cut, RefusesWhatItCannotUnderstand) {
               std::string::npos);
 }
 
-TEST_F(Cut, NamesTheElementThatCannotBeSplit) {
-    const auto outcome =
-        run("cut bricks.vtu --out out.vtu --mode split --plane 0.05,0.05,0.05,1,1,1");
+TEST_F(Cut, DividesHexahedraExactly) {
+    const auto plane = cut("--plane 0.55,0,0,1,0,0", "bricks.vtu");
+    EXPECT_EQ(plane["mode"], "split");
+    expect_volumes(plane, {0.55, 0.45}, 1e-13);
+    EXPECT_EQ(plane["crossed"], 16);
+    EXPECT_EQ(plane["elements_added"], 16);
+    EXPECT_EQ(plane["growth"], 1.0);
+    EXPECT_NEAR(plane["cut_area"].get<double>(), 1.0, 1e-13);
+    EXPECT_LE(plane["surface_distance"]["max"].get<double>(), 1e-13);
+
+    const auto oblique = cut("--plane 0.5,0.5,0.5,1,0.3,0.2 --plane 0.5,0.5,0.5,-0.2,1,0.4",
+                             "bricks.vtu");
+    EXPECT_EQ(oblique["pieces"].size(), 4u);
+    EXPECT_LE(oblique["volume"]["error"].get<double>(), 1e-13);
+
+    const auto outcome = run("cut bricks.vtu --out out.msh --plane 0.55,0,0,1,0,0");
     EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(outcome.err,
-              "incise: bricks.vtu: --plane 0.05,0.05,0.05,1,1,1: element 0 is a hexahedron, and "
-              "only tetrahedra can be split; use --mode separate\n");
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "out.vtu"));
+    EXPECT_NE(outcome.err.find("has no polyhedra, and cell "), std::string::npos) << outcome.err;
 }
 
 TEST_F(Cut, ReportsOutputFailures) {

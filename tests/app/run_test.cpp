@@ -243,63 +243,6 @@ move = [{ time = 0.033, by = [0, 0, 0] }, { time = 0.034, by = [0, 0, 500] }]
 }
 
 // A brick is led to where a blade passes that divides, which no look at the body at rest tells.
-TEST_F(Run, StopsWithASummaryOnAFailedCut) {
-    write("both.vtk", R"(# vtk DataFile Version 3.0
-a brick and a tetrahedron
-ASCII
-DATASET UNSTRUCTURED_GRID
-POINTS 12 double
-0 0 0 0.1 0 0 0.1 0.1 0 0 0.1 0 0 0 0.1 0.1 0 0.1 0.1 0.1 0.1 0 0.1 0.1
-1 0 0 1.1 0 0 1 0.1 0 1 0 0.1
-CELLS 2 14
-8 0 1 2 3 4 5 6 7
-4 8 9 10 11
-CELL_TYPES 2
-12
-10
-CELL_DATA 2
-SCALARS region int 1
-LOOKUP_TABLE default
-1
-2
-)");
-    write("scene.toml", R"([mesh]
-file = "both.vtk"
-[[material]]
-regions = 1
-method = "hybmss"
-density = 1000
-young = 1000
-poisson = 0.4
-[[material]]
-regions = 2
-density = 1000
-young = 1000
-poisson = 0.4
-[dynamics]
-end_time = 0.05
-[[constraint]]
-where = { region = 1 }
-move = [{ time = 0, by = [0, 0, 0] }, { time = 0.02, by = [0.25, 0, 0] }]
-[[tool]]
-name = "knife"
-kind = "blade"
-mode = "split"
-edge = [[0.3, -1, 0], [0.3, 1, 0]]
-path = [{ time = 0, at = [0, 0, -1] }, { time = 0.05, at = [0, 0, 1] }]
-)");
-    const auto outcome = run({"scene.toml", "--quiet"});
-    EXPECT_EQ(outcome.status, 2);
-    const testing::Matcher<const std::string&> has_its_form = testing::MatchesRegex(
-        "incise: scene: step [0-9]+, t = 0\\.03 s: tool 'knife', at t = 0\\.03 s: "
-        "element 0 "
-        "is a hexahedron, and only tetrahedra can be split; use mode = "
-        "\"separate\".*scene\\.pvd\n");
-    EXPECT_TRUE(has_its_form.Matches(outcome.err)) << outcome.err;
-    EXPECT_EQ(summary().at("status"), "failed");
-    EXPECT_EQ(summary().at("frames"), 3);  // 0 to 0.02
-}
-
 TEST_F(Run, FailsWhereItCannotWrite) {
     write("scene.toml", scene);
     write("file", "not a folder");

@@ -270,43 +270,6 @@ TEST(Split, AlongTwoCrossingPlanesLeavesFourComponents) {
         }
 }
 
-TEST(Split, RefusesOtherCellsAndChangesNothing) {
-    for (const auto& family : test::mesh_families()) {
-        if (family.name != "hexahedra" && family.name != "mixed") continue;
-        for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
-            Random random(seed);
-            Mesh mesh = Mesh::build(family.data).mesh;
-            const std::vector<Vec3> x(mesh.rest_positions().begin(), mesh.rest_positions().end());
-            // Through the first element, which is a hexahedron.
-            Vec3 centre = TissueMotion::centre(mesh, CellId(0), x);
-            for (std::size_t i = 0; i < mesh.element_capacity(); ++i)
-                if (mesh.kind(CellId(i)) == topology::CellKind::hexahedron)
-                    centre = TissueMotion::centre(mesh, CellId(i), x);
-            const MeshSnapshot before(mesh);
-            CutFront front;
-            SnapHistory snap_history;
-            try {
-                split(mesh, {mesh, x, x}, Plane(centre, random.vector(1.0)), front, {0.1},
-                      snap_history);
-                ADD_FAILURE() << "it was split";
-            } catch (const InputError& error) {
-                EXPECT_NE(std::string(error.what()).find("only tetrahedra can be split"),
-                          std::string::npos);
-            }
-            EXPECT_EQ(MeshSnapshot(mesh), before);
-            EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
-            EXPECT_TRUE(front.is_empty());
-        }
-    }
-    // Elements that are not crossed may be what they like.
-    Mesh mesh = Mesh::build(test::mesh_families().back().data).mesh;
-    const std::vector<Vec3> x(mesh.rest_positions().begin(), mesh.rest_positions().end());
-    CutFront front;
-    SnapHistory snap_history;
-    EXPECT_TRUE(split(mesh, {mesh, x, x}, Plane({0, 0, 5}, {0, 0, 1}), front, {0.1}, snap_history)
-                    .changes.is_empty());
-}
-
 TEST(Split, RecordsWhereItsNodesAndElementsComeFrom) {
     for (const auto* family : test::tetrahedral_families())
         for (const double snap : {0.0, 0.1})

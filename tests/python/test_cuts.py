@@ -83,11 +83,12 @@ class Cuts(unittest.TestCase):
         result = incise.cut(self.block, sweeps=[sweep])
         self.assertEqual(len(result.report["pieces"]), 2)
         hexes = incise.Mesh.box([0.1, 0.1, 0.1], [4, 2, 2], "hex")
-        result = incise.cut(hexes, sweeps=[sweep])
+        result = incise.cut(hexes, sweeps=[sweep], mode="separate")
         self.assertEqual(len(result.report["pieces"]), 2)
         self.assertEqual(result.mesh.num_cells, 16)
-        with self.assertRaisesRegex(incise.InputError, "use mode='separate'"):
-            incise.cut(hexes, planes=[([0.04, 0, 0], [1, 0, 0])], mode="split")
+        result = incise.cut(hexes, planes=[([0.04, 0, 0], [1, 0, 0])])
+        self.assertEqual(len(result.report["pieces"]), 2)
+        self.assertEqual(result.mesh.num_cells, 20)
 
     def test_removals(self) -> None:
         for tool in ({"remove_spheres": [([0, 0, 0], 0.05)]},

@@ -24,11 +24,6 @@ Value table(std::initializer_list<std::pair<std::string, Value>> entries) {
     return {.data = std::move(made), .location = {}};
 }
 
-topology::Mesh mesh_of(topology::CellKind kind) {
-    return topology::Mesh::build(topology::box_mesh(kind, Vec3::Zero(), Vec3::Ones(), {1, 1, 1}))
-        .mesh;
-}
-
 HandTool build(const Value& definition, const std::string& why_no_contact = {}) {
     return build_hand_tool("mine", definition, ".", why_no_contact);
 }
@@ -67,10 +62,10 @@ TEST(HandTool, IsWhatTheKeysOfAScenarioSay) {
     EXPECT_TRUE(std::holds_alternative<cutting::PlaneCut>(plane.shape));
 }
 
-TEST(HandTool, TakesTheModeThatSuitsTheMesh) {
+TEST(HandTool, SplitsUnlessToldOtherwise) {
     const Value blade = table({{"kind", text("blade")}, {"edge", edge}});
     const HandTool made = build_hand_tool("mine", blade, ".", "");
-    EXPECT_EQ(std::get<cutting::Blade>(made.shape).mode, cutting::CutMode::separate);
+    EXPECT_EQ(std::get<cutting::Blade>(made.shape).mode, cutting::CutMode::split);
 }
 
 /// True if each line of the text begins with the name of the tool, once.
@@ -82,15 +77,14 @@ bool names_the_tool_once(const std::string& text) {
 }
 
 TEST(HandTool, IsNamedOnceInEachMessage) {
-    const topology::Mesh hexahedra = mesh_of(topology::CellKind::hexahedron);
-    const Value splitting =
-        table({{"kind", text("blade")}, {"edge", edge}, {"mode", text("split")}});
-    const Value tough =
-        table({{"kind", text("blade")}, {"edge", edge}, {"toughness", number(100.0)}});
+    const Value tough = table({{"kind", text("blade")},
+                               {"edge", edge},
+                               {"mode", text("separate")},
+                               {"toughness", number(100.0)}});
     const Value of_file =
         table({{"kind", text("cut")}, {"surface", table({{"file", text("none.stl")}})}});
     const Value no_edge = table({{"kind", text("blade")}, {"edge", list({point(0, 0, 0)})}});
-    for (const Value& definition : {splitting, tough, of_file, no_edge, number(3.0)}) {
+    for (const Value& definition : {tough, of_file, no_edge, number(3.0)}) {
         try {
             build_hand_tool("mine", definition, ".", "");
             ADD_FAILURE() << "accepted";

@@ -329,8 +329,7 @@ TEST(Scissors, GoOnWithTheSameBitsAfterRestoreAndUndo) {
     }
 }
 
-// They can only divide, and tell which cell they cannot.
-TEST(Scissors, StopAtAHexahedron) {
+TEST(Scissors, DivideHexahedra) {
     WorldDef def = soft_body();
     def.mesh = topology::box_mesh(topology::CellKind::hexahedron, Vec3::Zero(),
                                   Vec3::Constant(size), {4, 4, 4});
@@ -339,15 +338,9 @@ TEST(Scissors, StopAtAHexahedron) {
     const ToolId tool = world.add_tool({"scissors", Scissors{0.2, 1.0, 0.01}});
     world.place_tool(tool, {across_strip({}).rotation, {0.051, -0.05, 0.05}});
     world.close_tool(tool);
-    try {
-        for (int i = 0; i < 1000; ++i) world.step(0.5 * world.stable_step());
-        FAIL();
-    } catch (const ToolError& error) {
-        EXPECT_EQ(error.tool, tool);
-        EXPECT_TRUE(error.undividable.is_valid());
-        EXPECT_THAT(error.what(), HasSubstr("tool 'scissors'"));
-    }
-    EXPECT_EQ(world.mesh().num_elements(), 64U);
+    for (int i = 0; i < 1000 && world.mesh().num_elements() == 64U; ++i)
+        world.step(0.5 * world.stable_step());
+    EXPECT_GT(world.mesh().num_elements(), 64U);
 }
 
 TEST(Scissors, AreRefusedIfTheyCannotBe) {

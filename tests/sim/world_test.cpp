@@ -445,23 +445,5 @@ TEST(World, RefusesStepsAfterFailureUntilRestored) {
     EXPECT_TRUE(world.save() == other.save());
 }
 
-TEST(World, ReportsWhatAToolCannotDivide) {
-    WorldDef def;
-    def.mesh = topology::box_mesh(topology::CellKind::hexahedron, Vec3::Zero(),
-                                  Vec3::Constant(size), {2, 2, 2});
-    def.materials = {{1000.0, physics::HybridSprings{400.0, 400.0}}};
-    World world(std::move(def));
-    const ToolId tool_id = world.add_tool(scalpel());
-    world.place_tool(tool_id, scalpel_pose(0.0));
-    try {
-        world.step(0.5 * world.stable_step(), StepInputs().move(tool_id, scalpel_pose(0.5)));
-        FAIL() << "it has been divided";
-    } catch (const ToolError& error) {
-        EXPECT_EQ(error.tool, tool_id);
-        EXPECT_TRUE(world.mesh().is_alive(error.undividable));
-        EXPECT_EQ(std::string(error.what()).find("mode ="), std::string::npos);
-    }
-}
-
 }  // namespace
 }  // namespace incise::sim
