@@ -291,8 +291,8 @@ TEST_F(Cut, SeparatesHexahedraAlongTheirFaces) {
     expect_volumes(surface, {0.875, 0.125}, 1e-15);  // the inner bricks
     EXPECT_NEAR(surface["surface_distance"]["max"].get<double>(), 0.05 * std::sqrt(3.0), 0.037);
 
-    const auto sweep = cut(
-        "--mode separate --sweep '0.55,-1,2;0.55,2,2 | 0.55,-1,-1;0.55,2,-1'", "bricks.vtu");
+    const auto sweep =
+        cut("--mode separate --sweep '0.55,-1,2;0.55,2,2 | 0.55,-1,-1;0.55,2,-1'", "bricks.vtu");
     expect_volumes(sweep, {0.5, 0.5}, 1e-15);
     EXPECT_NEAR(sweep["surface_distance"]["max"].get<double>(), 0.05, 1e-15);
 }
@@ -403,8 +403,8 @@ TEST_F(Cut, DividesHexahedraExactly) {
     EXPECT_NEAR(plane["cut_area"].get<double>(), 1.0, 1e-13);
     EXPECT_LE(plane["surface_distance"]["max"].get<double>(), 1e-13);
 
-    const auto oblique = cut("--plane 0.5,0.5,0.5,1,0.3,0.2 --plane 0.5,0.5,0.5,-0.2,1,0.4",
-                             "bricks.vtu");
+    const auto oblique =
+        cut("--plane 0.5,0.5,0.5,1,0.3,0.2 --plane 0.5,0.5,0.5,-0.2,1,0.4", "bricks.vtu");
     EXPECT_EQ(oblique["pieces"].size(), 4u);
     EXPECT_LE(oblique["volume"]["error"].get<double>(), 1e-13);
 

@@ -117,7 +117,8 @@ fix = "xyz"
     const std::string soft = "density = 1000\nyoung = 5000\npoisson = 0.4\n";
     Simulation simulation(folder.scenario(
         head + "[[material]]\nregions = 7\n" + soft + "[[material]]\nmethod = \"hybmss\"\n" + soft +
-        "[[tool]]\nkind = \"blade\"\nmode = \"separate\"\nedge = [[0, -1, 0.05], [0, 1, 0.05]]\npath = [{ time = 0, at "
+        "[[tool]]\nkind = \"blade\"\nmode = \"separate\"\nedge = [[0, -1, 0.05], [0, 1, "
+        "0.05]]\npath = [{ time = 0, at "
         "= [-0.1, 0, 0] }, { time = 0.15, at = [0.5, 0, 0] }]\n"));
     run(simulation);
     EXPECT_EQ(topology::components(simulation.mesh()).count, 4);  // each is parted
