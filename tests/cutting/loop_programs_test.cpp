@@ -59,7 +59,7 @@ class Patient {
         for (std::size_t i = edits_.size(); i-- > 0;) {
             const physics::BodyEdit back = inverse(edits_[i]);
             topology::replay(mesh_, back.material);
-            model_.apply(back);
+            model_.apply(mesh_, back);
         }
         EXPECT_TRUE(test::MeshSnapshot(mesh_) == uncut);
         EXPECT_TRUE(std::ranges::equal(model_.masses(), masses));

@@ -56,7 +56,7 @@ const Kind kinds[] = {
      [](int n, std::uint64_t seed) { return test::jittered_cube(n, 0.2, seed); }},
 };
 
-struct PlaneOfCut {
+struct Divider {
     Vec3 point, normal;
     double height(const Vec3& x) const { return (x - point).dot(normal); }
 };
@@ -83,7 +83,7 @@ Solid unit_cube() {
 }
 
 /// The part of a convex body above a plane.
-Solid clipped(const Solid& solid, const PlaneOfCut& plane) {
+Solid clipped(const Solid& solid, const Divider& plane) {
     Solid result;
     Polygon cap;
     for (const Polygon& face : solid) {
@@ -120,9 +120,9 @@ double volume(const Solid& solid) {
 }
 
 /// The volumes of the parts into which planes divide the unit cube, in ascending order.
-std::vector<double> exact_volumes(const std::vector<PlaneOfCut>& planes) {
+std::vector<double> exact_volumes(const std::vector<Divider>& planes) {
     std::vector<Solid> parts{unit_cube()};
-    for (const PlaneOfCut& plane : planes) {
+    for (const Divider& plane : planes) {
         std::vector<Solid> next;
         for (const Solid& part : parts)
             for (const double side : {1.0, -1.0})
@@ -161,7 +161,7 @@ class Body {
         return done;
     }
 
-    void sweep(const PlaneOfCut& plane, int num_steps, double from = -2.0, double to = 2.0) {
+    void sweep(const Divider& plane, int num_steps, double from = -2.0, double to = 2.0) {
         LoopFront front;
         const Vec3 u = plane.normal.unitOrthogonal(), v = plane.normal.normalized().cross(u);
         const auto edge = [&](int i) {
@@ -203,7 +203,7 @@ class Body {
     std::vector<ChangeSet> edits;
 };
 
-void expect_parts(const Body& body, const std::vector<PlaneOfCut>& planes, double tolerance) {
+void expect_parts(const Body& body, const std::vector<Divider>& planes, double tolerance) {
     const auto volumes = body.rest_volumes(), expected = exact_volumes(planes);
     EXPECT_NEAR(Body::sum(volumes), body.volume_before, 1e-13);
     ASSERT_EQ(volumes.size(), expected.size());
@@ -212,9 +212,9 @@ void expect_parts(const Body& body, const std::vector<PlaneOfCut>& planes, doubl
 }
 
 /// Planes through the cube, none of which cuts off a corner that is smaller than a cell.
-std::vector<PlaneOfCut> random_planes(Random& random, int count) {
+std::vector<Divider> random_planes(Random& random, int count) {
     for (;;) {
-        std::vector<PlaneOfCut> planes;
+        std::vector<Divider> planes;
         for (int i = 0; i < count; ++i)
             planes.push_back(
                 {Vec3::Constant(0.5) + random.vector(0.25), random.vector(1.0).normalized()});
@@ -259,7 +259,7 @@ TEST(LoopSplitter, PartsABodyAlongThreePlanes) {
     for (const int num_steps : {1, 25})
         for_bodies(4, 4, [&](Body& body, Random& random) {
             const auto planes = random_planes(random, 3);
-            for (const PlaneOfCut& plane : planes) {
+            for (const Divider& plane : planes) {
                 body.sweep(plane, num_steps);
             }
             expect_parts(body, planes, 5e-3);
@@ -299,9 +299,9 @@ class CutBody : public Body {
 
 /// An edge that moves in a plane: its middle goes along v, its ends are at +-u.
 struct StraightPath {
-    PlaneOfCut plane;
+    Divider plane;
     Vec3 u, v;
-    explicit StraightPath(const PlaneOfCut& p, double turn = 0.0) : plane(p) {
+    explicit StraightPath(const Divider& p, double turn = 0.0) : plane(p) {
         const Vec3 a = p.normal.unitOrthogonal(), b = p.normal.normalized().cross(a);
         u = std::cos(turn) * a + std::sin(turn) * b;
         v = -std::sin(turn) * a + std::cos(turn) * b;
@@ -369,7 +369,7 @@ TEST(LoopSplitter, StopsOnNodesEdgesAndFaces) {
             const auto node = [&] {
                 return body.mesh.rest_position(VertexId(random.below(body.mesh.node_capacity())));
             };
-            PlaneOfCut plane;
+            Divider plane;
             for (;;) {
                 plane.point = node();
                 plane.normal = random.below(2) == 0 ? Vec3(random.grid_point(3) - Vec3::Ones())

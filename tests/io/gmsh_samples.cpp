@@ -69,6 +69,8 @@ int gmsh_type(CellKind kind) {
             return 6;
         case CellKind::pyramid:
             return 7;
+        case CellKind::polyhedron:
+            break;
     }
     return 0;
 }

@@ -112,6 +112,8 @@ std::vector<std::vector<std::size_t>> wrong_orders(CellKind kind) {
             return {{0, 2, 1, 3, 5, 4}, {3, 4, 5, 0, 1, 2}, {0, 1, 2, 3, 5, 4}, {0, 1, 2, 5, 4, 3}};
         case CellKind::pyramid:
             return {{0, 3, 2, 1, 4}, {0, 1, 3, 2, 4}, {0, 3, 1, 2, 4}};
+        case CellKind::polyhedron:
+            break;
     }
     return {};
 }
