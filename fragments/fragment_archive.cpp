@@ -31,7 +31,9 @@ class FragmentArchive {
         archive.require_lists();
         archive.restore_rows();
         archive.restore_lists_of_cells();
-        for (const ElementId e : fragments.elements()) fragments.update_part_shares(material, e);
+        for (std::size_t c = 0; c < fragments.kinds_.size(); ++c)
+            if (const CarrierId carrier(c); !fragments.was_never_alive(carrier))
+                fragments.update_part_shares(material, carrier);
         if (const auto faults = validate(fragments, material); !faults.empty())
             require(false, faults.front().c_str());
         return fragments;

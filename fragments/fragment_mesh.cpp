@@ -8,6 +8,7 @@
 #include "incise/fragments/cell_weights.h"
 #include "incise/fragments/fragment_update.h"
 #include "incise/fragments/part_shares.h"
+#include "incise/fragments/part_volumes.h"
 #include "incise/topology/geometry.h"
 
 namespace incise::fragments {
@@ -209,8 +210,15 @@ void FragmentMesh::go_back(const Mesh& material, const FragmentChanges& back) {
     std::vector<ElementId> changed;
     for (const CarriedCell& cell : back.cells) changed.insert(changed.end(), {cell.from, cell.to});
     for (const ShareChange& share : back.shares) changed.push_back(share.fragment);
-    for (const ElementId e : changed)
-        if (e.is_valid()) update_part_shares(material, e);
+    std::vector<CarrierId> touched;
+    for (const ElementId e : changed) {
+        if (!e.is_valid()) continue;
+        touched.push_back(carriers_[e.index()]);
+        if (!is_alive(e)) part_shares_.erase(e);
+    }
+    std::ranges::sort(touched);
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    for (const CarrierId carrier : touched) update_part_shares(material, carrier);
     truncate(edit.node_capacity_after, edit.element_capacity_after, material.element_capacity());
     is_constrained_.resize(material.node_capacity());
 }
@@ -241,26 +249,65 @@ void FragmentMesh::move_cell(CellId cell, ElementId from, ElementId to) {
     if (to.is_valid()) drop_if_trivial(cells_of_fragment_, to);
 }
 
-bool FragmentMesh::update_part_shares(const Mesh& material, ElementId e) {
-    std::vector<double> shares;
-    if (is_alive(e) && kind(e) != CellKind::tetrahedron) {
-        std::array<Vec3, max_corners> x;
-        const auto origins = origins_of(carrier(e));
-        for (std::size_t k = 0; k < origins.size(); ++k) x[k] = rest_position(origins[k]);
-        const auto at_rest = std::span(x).first(origins.size());
-        std::vector<CellId> own;
+std::vector<ElementId> FragmentMesh::update_part_shares(const Mesh& material, CarrierId carrier) {
+    std::vector<ElementId> changed;
+    const CellKind kind = kinds_[carrier.index()];
+    if (kind == CellKind::tetrahedron) return changed;
+    std::array<Vec3, max_corners> x;
+    const auto origins = origins_of(carrier);
+    for (std::size_t k = 0; k < origins.size(); ++k) x[k] = rest_position(origins[k]);
+    const auto at_rest = std::span(x).first(origins.size());
+
+    std::vector<ElementId> owners;  // of the parts; the last one has none: it is carried elsewhere
+    std::vector<std::vector<CellId>> parts;
+    for (const ElementId e : fragments_of(carrier)) {
+        if (!e.is_valid()) continue;
+        owners.push_back(e);
+        parts.emplace_back();
         for (const CellId cell : cells_of(e))
-            if (is_own(cell)) own.push_back(cell);
-        shares = filled_fractions(kind(e), at_rest, material, own);
-        scale_to_volume(shares, kind(e), at_rest, volume(e));
+            if (is_own(cell)) parts.back().push_back(cell);
     }
-    const auto known = part_shares(e);
-    if (std::ranges::equal(known, shares)) return false;
-    if (shares.empty())
-        part_shares_.erase(e);
-    else
-        part_shares_[e] = std::move(shares);
-    return true;
+    owners.emplace_back();
+    parts.emplace_back();
+    for (const CellId cell : cells_of_carrier(carrier))
+        if (material.is_alive(cell) && !is_own(cell)) parts.back().push_back(cell);
+
+    const double whole = volumes_[carrier.index()];
+    constexpr double rounding = 1e-10;  // as FragmentParts::share_of
+    double filled = 0.0;
+    std::vector<double> volumes;  // by part, m3
+    std::vector<std::vector<double>> fractions, divided;
+    for (const auto& cells : parts) {
+        fractions.push_back(filled_fractions(kind, at_rest, material, cells));
+        double sum = 0.0;
+        for (const CellId cell : cells) sum += topology::rest_volume(material, cell);
+        filled += sum;
+        // A part that is turned inside out has volume, and nothing in any tetrahedron.
+        if (fractions.back().empty() && sum > 0.0 && sum < (1.0 - rounding) * whole)
+            fractions.back().assign(num_parts(kind), sum / whole);
+        volumes.push_back(sum);
+        if (!fractions.back().empty()) divided.push_back(fractions.back());
+    }
+    if (divided.size() > 1 && std::abs(filled - whole) <= rounding * whole) {
+        fit_together(divided);
+        auto next = divided.begin();
+        for (auto& of_part : fractions)
+            if (!of_part.empty()) of_part = std::move(*next++);
+    }
+    for (std::size_t p = 0; p + 1 < owners.size(); ++p) {
+        const ElementId e = owners[p];
+        // What it carries of others is in all tetrahedra alike: if an edit then divides the
+        // fragment, that stays where it is.
+        if (const double others = volume(e) - volumes[p]; others > rounding * whole)
+            for (double& fraction : fractions[p]) fraction += others / whole;
+        if (std::ranges::equal(part_shares(e), fractions[p])) continue;
+        changed.push_back(e);
+        if (fractions[p].empty())
+            part_shares_.erase(e);
+        else
+            part_shares_[e] = std::move(fractions[p]);
+    }
+    return changed;
 }
 
 void FragmentMesh::set_fragments(CarrierId carrier, std::vector<ElementId> fragments) {

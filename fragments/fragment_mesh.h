@@ -102,10 +102,11 @@ class FragmentMesh {
     /// carrier that is whole, or cut in part. It exceeds 1 if cells of others outweigh those that
     /// are missing.
     double volume_share(ElementId e) const { return shares_[e.index()]; }
-    /// Returns by tetrahedron of CentreDivision how much of it the fragment has: all tetrahedra of
-    /// the carrier, times their shares, have the volume of the fragment. What the fragment carries
-    /// of other parts is spread in proportion to its own material. Empty for a tetrahedron, and for
-    /// a fragment whose own material is the whole carrier: it has the volume share of each.
+    /// Returns by tetrahedron of CentreDivision how much of it the fragment has. The tetrahedra of
+    /// the carrier, times their shares, have the volume of the fragment, unless a cut with bends
+    /// below the size of a cell has left parts that reach into each other. What the fragment
+    /// carries of others is in all tetrahedra alike. Empty for a tetrahedron, and for a fragment
+    /// whose own material is the whole carrier: it has the volume share of each.
     /// @lifetime Until the next edit.
     std::span<const double> part_shares(ElementId e) const {
         const auto it = part_shares_.find(e);
@@ -193,9 +194,9 @@ class FragmentMesh {
         else
             carried_around_.erase(cell);
     }
-    /// Computes the shares of the tetrahedra of a fragment, alive or dead. They depend only on its
-    /// own cells, its carrier and its volume share. Returns true if they have changed.
-    bool update_part_shares(const topology::Mesh& material, ElementId e);
+    /// Computes the shares of the tetrahedra of the living fragments of a carrier. They depend only
+    /// on its cells, and on the volume shares. Returns the fragments of which they have changed.
+    std::vector<ElementId> update_part_shares(const topology::Mesh& material, CarrierId carrier);
     /// Sets the living fragments of a carrier, in ascending order.
     void set_fragments(CarrierId carrier, std::vector<ElementId> fragments);
     // Lists of which an absent entry means the one id with the number of the key.

@@ -66,7 +66,7 @@ void FragmentParts::add(CarrierId carrier, std::span<const CellId> cells, double
     part.carrier = carrier;
     // A cut can leave flat cells whose volume is negative to rounding.
     constexpr double least_share = 1e-12;
-    part.volume = std::max(volume, least_share * fragments_.volumes_[carrier.index()]);
+    part.volume = volume > 0.0 ? volume : least_share * fragments_.volumes_[carrier.index()];
     part.master = index;
     part.is_light = volume < fragments_.light_share_ * fragments_.volumes_[carrier.index()];
     part.is_constrained = part.is_light && is_constrained(cells);

@@ -201,14 +201,19 @@ void FragmentUpdate::carry_cells() {
 }
 
 void FragmentUpdate::update_shares() {
+    std::vector<CarrierId> carriers;
     for (const auto& [e, before] : shares_before_) {
         if (!fragments_.is_alive(e)) continue;
         fragments_.shares_[e.index()] = share_of(e);
         fragments_.drop_if_trivial(fragments_.cells_of_fragment_, e);
-        if (fragments_.update_part_shares(material_, e)) part_shares_changed_.push_back(e);
+        carriers.push_back(fragments_.carrier(e));
     }
+    make_sorted_set(carriers);
+    for (const CarrierId carrier : carriers)
+        for (const ElementId e : fragments_.update_part_shares(material_, carrier))
+            part_shares_changed_.push_back(e);
     make_sorted_set(part_shares_changed_);
-    for (const ElementId e : died_) fragments_.update_part_shares(material_, e);
+    for (const ElementId e : died_) fragments_.part_shares_.erase(e);
 }
 
 double FragmentUpdate::share_of(ElementId fragment) {

@@ -61,11 +61,13 @@ std::vector<double> filled_fractions(CellKind kind, std::span<const Vec3> corner
     return {fractions.begin(), fractions.begin() + static_cast<std::ptrdiff_t>(num_parts(kind))};
 }
 
-void scale_to_volume(std::vector<double>& fractions, CellKind kind, std::span<const Vec3> corners,
-                     double volume) {
-    if (fractions.empty()) return;
-    const double by = volume / volume_of(fractions, part_volumes(kind, corners));
-    for (double& fraction : fractions) fraction *= by;
+void fit_together(std::vector<std::vector<double>>& fractions) {
+    for (std::size_t t = 0; t < fractions.front().size(); ++t) {
+        double sum = 0.0;
+        for (const auto& of_part : fractions) sum += of_part[t];
+        for (auto& of_part : fractions)
+            of_part[t] = sum > 0.0 ? of_part[t] / sum : 1.0 / static_cast<double>(fractions.size());
+    }
 }
 
 }  // namespace incise::fragments

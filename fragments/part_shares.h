@@ -22,8 +22,10 @@ namespace incise::fragments {
 std::vector<double> filled_fractions(topology::CellKind kind, std::span<const Vec3> corners,
                                      const topology::Mesh& material, std::span<const CellId> cells);
 
-/// Scales the result of filled_fractions() so that the volume of all shares is `volume`, m3.
-void scale_to_volume(std::vector<double>& fractions, topology::CellKind kind,
-                     std::span<const Vec3> corners, double volume);
+/// Makes the fractions of parts that fill a carrier together add up to 1 in each tetrahedron. Those
+/// of parts that lie beside each other do so within rounding. A cut with bends that are smaller
+/// than a cell can leave parts that reach into each other.
+/// @param fractions  those of each part, none empty
+void fit_together(std::vector<std::vector<double>>& fractions);
 
 }  // namespace incise::fragments

@@ -260,31 +260,6 @@ TEST(FinishedCut, EndsWhereFacesOfTheMeshAre) {
             }
 }
 
-// The way's continuation comes to hexahedra, which the blade itself has not: no cut is refused for
-// that, it ends as the front is.
-TEST(FinishedCut, LeavesHexahedraAheadAsTheyAre) {
-    topology::MeshData data = topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
-                                                 {0.5, 1.0, 1.0}, {3, 6, 6});
-    const topology::MeshData ahead = topology::box_mesh(
-        topology::CellKind::hexahedron, {0.5, 0.0, 0.0}, {0.5, 1.0, 1.0}, {3, 6, 6});
-    const auto first = static_cast<std::int64_t>(data.points.size());
-    data.points.insert(data.points.end(), ahead.points.begin(), ahead.points.end());
-    for (std::size_t c = 0; c < ahead.num_cells(); ++c) {
-        std::vector<std::int64_t> corners(ahead.cell(c).begin(), ahead.cell(c).end());
-        for (std::int64_t& corner : corners) corner += first;
-        data.add_cell(ahead.kinds[c], corners, 1);
-    }
-    SplitBody body(data);
-    const auto edge = [](double x) { return Polyline{{x, -1.0, 0.4731}, {x, 2.0, 0.4731}}; };
-    CutFront front;
-    for (const auto& surface : sweep(edge(-0.1), edge(0.45), 3))
-        body.cut(*surface, front, {0.0}, body.positions);
-    const std::size_t num_elements = body.mesh.num_elements();
-    body.finish({edge(0.45), {Vec3::UnitX(), Vec3::UnitX()}}, front, {0.0});
-    EXPECT_EQ(body.mesh.num_elements(), num_elements);
-    EXPECT_TRUE(front.is_empty());
-}
-
 // A second blade begins a hair before where the first one stopped: together they part the body.
 TEST(FinishedCut, IsCarriedOnByAnotherBlade) {
     for (std::uint64_t seed = 0; seed < test::num_cases(12); ++seed) {

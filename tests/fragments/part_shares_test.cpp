@@ -77,14 +77,11 @@ TEST(PartShares, DoNotDependOnHowTheMaterialIsDivided) {
     for (std::size_t t = 0; t < rest.size(); ++t) EXPECT_NEAR(of_coarse[t] + rest[t], 1.0, 1e-13);
 }
 
-TEST(PartShares, HaveTheVolumeThatTheyAreScaledTo) {
-    const DividedBox box({3, 1, 1});
-    auto fractions = box.fractions(box.cells_where([](const Vec3& x) { return x[0] < 0.15; }));
-    const auto before = fractions;
-    scale_to_volume(fractions, CellKind::hexahedron, box.corners, 0.003);
-    EXPECT_NEAR(box.volume_of(fractions), 0.003, 1e-16);
-    for (std::size_t t = 0; t < fractions.size(); ++t)
-        EXPECT_NEAR(fractions[t], 1.5 * before[t], 1e-14);
+TEST(PartShares, OfPartsThatFillACellAddUpToOne) {
+    std::vector<std::vector<double>> fractions{{0.25, 1.01, 0.0}, {0.5, 0.0, 0.0}};
+    fit_together(fractions);
+    EXPECT_EQ(fractions,
+              (std::vector<std::vector<double>>{{1.0 / 3, 1.0, 0.5}, {2.0 / 3, 0.0, 0.5}}));
 }
 
 }  // namespace

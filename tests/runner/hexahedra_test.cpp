@@ -48,7 +48,8 @@ path = [{ time = 0.15, at = [-0.02, 0, 0] }, { time = 0.3, at = [0.15, 0, 0] }]
 
 TEST(HexahedralBody, IsPartedAndCarvedWhileItDeforms) {
     const RunFolder folder;
-    Simulation simulation(folder.scenario(pulled_block + knife + R"([[tool]]
+    Simulation simulation(folder.scenario(pulled_block + knife + R"(mode = "separate"
+[[tool]]
 kind = "carver"
 name = "burr"
 shape = { sphere = { radius = 0.03 } }

@@ -75,16 +75,6 @@ TEST(ToolErrors, OfTheForceOfCutting) {
     EXPECT_EQ(
         error_of(blade + "toughness = 1\nmode = \"separate\"\n"),
         "scene.toml:13:13: key 'tool[0].toughness': belongs to mode = \"split\": leave it out");
-    const auto hexahedra = ScenarioFile(
-                               "[mesh]\nbox = { size = [1, 1, 1], cells = [2, 2, 2], element = "
-                               "\"hex\" }\n[[material]]\nmethod = \"hybmss\"\ndensity = 1\nyoung = "
-                               "1\npoisson = 0.3\n[dynamics]\nend_time = 1\n" +
-                               blade + "toughness = 1\n")
-                               .all_errors();
-    ASSERT_EQ(hexahedra.size(), 1u);
-    EXPECT_NE(
-        hexahedra[0].find("has a toughness, and the mesh has elements that are no tetrahedra"),
-        std::string::npos);
     // Elements of 0.5 m of 1,600 Pa bear up to 1,200 J/m2.
     const auto too_tough =
         ScenarioFile(minimal + blade + "toughness = 1300\ncutting_force = \"apply\"\n")
