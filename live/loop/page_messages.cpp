@@ -51,12 +51,9 @@ std::string PageMessages::hello(bool is_operator) const {
                   {"fields", Json::array()},
                   {"scripted_tools", Json::array()},
                   {"kinds", Json::array()}};
-    const bool has_tetrahedra = std::ranges::any_of(
-        mesh.elements(), [&](CellId e) { return mesh.kind(e) == topology::CellKind::tetrahedron; });
     for (const scenario::ToolKind* kind : scenario::tool_kinds()) {
         const cutting::ToolTraits& traits = kind->traits();
-        if (!traits.is_at_once && (session_.has_contact() || !traits.touches) &&
-            (has_tetrahedra || !traits.only_divides))
+        if (!traits.is_at_once && (session_.has_contact() || !traits.touches))
             hello["kinds"].push_back(kind->name());
     }
     for (const int region : pictures_.mesh().regions())
