@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "incise/base/error.h"
 #include "incise/physics/body/model.h"
@@ -162,10 +163,13 @@ Momenta Model::momenta_of_removed(const ChangeSet& changes) const {
     for (const auto& [cell, volume] : volumes) {
         const ElementId e = fragments().fragment_of_cell(cell);
         const auto corners = fragments().corners(e);
-        const double mass = structure_.density(fragments().region(e)) * volume /
-                            static_cast<double>(corners.size());
-        for (const NodeId n : corners)
-            sum.add(mass, positions()[n.index()], velocities()[n.index()]);
+        const double mass = structure_.density(fragments().region(e)) * volume;
+        const auto& masses = structure_.elements().block_of(fragments(), e).contributions(e).mass;
+        const double all = std::accumulate(masses.begin(), masses.end(), 0.0);
+        const bool is_tetrahedron = corners.size() == 4;  // its corners have equal masses
+        for (std::size_t k = 0; k < corners.size(); ++k)
+            sum.add(is_tetrahedron ? mass / 4.0 : mass * masses[k] / all,
+                    positions()[corners[k].index()], velocities()[corners[k].index()]);
     }
     return sum;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "incise/topology/geometry.h"
@@ -70,8 +71,12 @@ inline Carried carried_by(const Model& model, CellId cell) {
               result.energy * volume / result.volume, Vec3::Zero(),
               is_tetrahedron ? slenderness(mesh, cell) : 1.0};
     const auto corners = model.fragments().corners(e);
+    const auto& masses =
+        model.structure().elements().block_of(model.fragments(), e).contributions(e).mass;
+    const double all = std::accumulate(masses.begin(), masses.end(), 0.0);
+    std::size_t k = 0;
     for (const NodeId n : corners)
-        c.momentum += c.mass / static_cast<double>(corners.size()) * model.velocities()[n.index()];
+        c.momentum += c.mass * masses[k++] / all * model.velocities()[n.index()];
     return c;
 }
 
