@@ -243,7 +243,8 @@ void Cutter::find_opened(const Mesh& mesh, const ChangeSet& changes) {
                 for (int p = 0; p < size; ++p) {
                     const VertexId at = mesh.face_corner(face, p);
                     longest = std::max(longest, (mesh.rest_position(at) - x).norm());
-                    if (at != n || !mesh.is_on_cut(face)) continue;
+                    // Faces of other cells were opened whole, or lie beside what was removed.
+                    if (at != n || !mesh.is_polyhedron(e) || !mesh.is_on_cut(face)) continue;
                     const VertexId previous = mesh.face_corner(face, (p + size - 1) % size),
                                    next = mesh.face_corner(face, (p + 1) % size);
                     const Vec3 normal =
