@@ -28,10 +28,12 @@ struct BodyView {
     /// Of the last step, m, by node of the fragments. A solver may ask for forces at others.
     std::span<const Vec3> positions;
 
-    /// Returns the mass of an element of the mesh at one of its corners, kg.
+    /// Returns the mass of an element of the mesh at one of its corners, kg. A part of an element,
+    /// and one whose faces have other corners than its fragment, has the same at each corner.
     double mass_at_corner(CellId cell, std::size_t corner) const {
         const ElementId e = fragments.fragment_of_cell(cell);
-        if (fragments.cells_of(e).size() == 1 && fragments.volume_share(e) == 1.0)
+        if (fragments.cells_of(e).size() == 1 && fragments.volume_share(e) == 1.0 &&
+            !mesh.is_polyhedron(cell))
             return elements.block_of(fragments, e).contributions(e).mass[corner];
         return elements.density(mesh.region(cell)) * topology::rest_volume(mesh, cell) /
                static_cast<double>(mesh.corners(cell).size());
