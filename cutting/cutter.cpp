@@ -265,20 +265,26 @@ void Cutter::find_opened(const Mesh& mesh, const ChangeSet& changes) {
 std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) const {
     const Cut& cut = cut_of(id);
     std::vector<FaceId> found;
-    if (cut.front.is_empty()) return found;
-    const SweptEdge edge(cut.edge, cut.edge);
+    if (cut.front.is_empty() && cut.loops.is_empty()) return found;
+    const SweptEdge edge(shifted(cut.edge), shifted(cut.edge));
+    const auto at = [&](VertexId n) { return MovingPoint{now_[n], now_[n]}; };
     for (const CellId e : mesh.elements())
-        for (int k = 0; k < traits(mesh.kind(e)).num_faces; ++k) {
+        for (int k = 0; k < mesh.num_faces(e); ++k) {
             const FaceId face{e, k};
-            if (mesh.face_size(face) != 3) continue;
-            std::array<MovingPoint, 3> triangle;
-            bool is_odd = false;
-            for (int p = 0; p < 3; ++p) {
-                const VertexId n = mesh.face_corner(face, p);
-                triangle[static_cast<std::size_t>(p)] = {now_[n], now_[n]};
-                is_odd ^= cut.front.is_crossed(n, mesh.face_corner(face, (p + 1) % 3));
+            const int size = mesh.face_size(face);
+            if (has_loops_ ? cut.loops.is_cut_face(mesh, face) : size != 3) continue;
+            bool is_odd = false, is_pierced = false;
+            for (int p = 0; p < size; ++p) {
+                const VertexId n = mesh.face_corner(face, p),
+                               next = mesh.face_corner(face, (p + 1) % size);
+                is_odd ^= cut.front.is_crossed(n, next) || cut.loops.owes(n, next);
+                is_odd ^= cut.loops.waits(mesh, face, n);
+                if (p > 1)
+                    is_pierced ^= edge.ends_inside({at(mesh.face_corner(face, 0)),
+                                                    at(mesh.face_corner(face, p - 1)), at(n)})
+                                      .value_or(false);
             }
-            if (is_odd != edge.ends_inside(triangle)) found.push_back(face);
+            if (is_odd != is_pierced) found.push_back(face);
         }
     return found;
 }

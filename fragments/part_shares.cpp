@@ -17,8 +17,9 @@ namespace {
 
 using Triangles = std::vector<std::array<Vec3, 3>>;
 
-/// Appends a face, divided into triangles from its corner with the lowest id. So both cells at the
-/// face divide it in the same way.
+/// Appends a face, divided into triangles. A plane one is divided from its corner with the lowest
+/// id, another one about the mean of its corners, as rest_volume() does. So both cells at the face
+/// divide it in the same way.
 void add_face(const Mesh& material, FaceId face, Triangles& triangles) {
     const int size = material.face_size(face);
     int first = 0;
@@ -27,7 +28,19 @@ void add_face(const Mesh& material, FaceId face, Triangles& triangles) {
     const auto at = [&](int k) {
         return material.rest_position(material.face_corner(face, (first + k) % size));
     };
-    for (int k = 2; k < size; ++k) triangles.push_back({at(0), at(k - 1), at(k)});
+    Vec3 normal = Vec3::Zero(), middle = Vec3::Zero();
+    for (int k = 0; k < size; ++k) middle += at(k) / size;
+    for (int k = 2; k < size; ++k) normal += (at(k - 1) - at(0)).cross(at(k) - at(0));
+    double height = 0.0, width = 0.0;
+    for (int k = 1; k < size; ++k) {
+        height = std::max(height, std::abs((at(k) - at(0)).dot(normal)));
+        width = std::max(width, (at(k) - at(0)).norm());
+    }
+    constexpr double flatness = 1e-12;
+    if (height <= flatness * width * normal.norm())
+        for (int k = 2; k < size; ++k) triangles.push_back({at(0), at(k - 1), at(k)});
+    else
+        for (int k = 0; k < size; ++k) triangles.push_back({middle, at(k), at((k + 1) % size)});
 }
 
 /// Returns the boundary of some cells together.

@@ -18,7 +18,7 @@ inline double tetrahedron_volume(const Vec3& a, const Vec3& b, const Vec3& c, co
 
 /// Returns the volume between the origin and a face. A quadrilateral is the bilinear patch: the
 /// flux of x through it is the mean of the fluxes through its two triangulations. A face of more
-/// corners is the fan of its triangles from the first corner.
+/// corners is the fan of its triangles about their mean, which is the same from both sides.
 /// @param size  the number of corners
 /// @param at    (position): the corner, anticlockwise as seen from outside
 template <class CornerAt>
@@ -32,8 +32,11 @@ double flux_of_face(int size, CornerAt at) {
         const Vec3 d = at(3);
         return 0.5 * (flux(a, b, c) + flux(a, c, d) + flux(a, b, d) + flux(b, c, d));
     }
+    Vec3 middle = Vec3::Zero();
+    for (int p = 0; p < size; ++p) middle += at(p);
+    middle /= size;
     double sum = 0.0;
-    for (int p = 2; p < size; ++p) sum += flux(a, at(p - 1), at(p));
+    for (int p = 0; p < size; ++p) sum += flux(middle, at(p), at(p + 1 == size ? 0 : p + 1));
     return sum;
 }
 

@@ -55,13 +55,13 @@ void LoopFront::divide(VertexId a, VertexId b, VertexId middle, double local_edg
     std::erase(marked_[b], a);
     mark(a, middle);
     mark(middle, b);
-    put_on(middle, local_edge_length);
     const Edge whole = edge_between(a, b);
     for (auto& [e, edges] : open_) {
         const auto it = std::ranges::find(edges, whole);
         if (it == edges.end()) continue;
         *it = edge_between(a, middle);
         edges.push_back(edge_between(middle, b));
+        put_on(middle, local_edge_length);
     }
 }
 
@@ -169,23 +169,40 @@ void LoopFront::apply(const Mesh& mesh, const ChangeSet& changes) {
 }
 
 void LoopFront::leave_behind(const Mesh& mesh) {
-    std::unordered_set<VertexId> needed;
+    std::unordered_set<VertexId> at_work;  // round which something waits or is open
     for (const auto& [e, edges] : open_)
-        for (const Edge& edge : edges) needed.insert({edge.a, edge.b});
-    std::vector<VertexId> finished;
+        for (const Edge& edge : edges) at_work.insert({edge.a, edge.b});
     std::vector<CellId> star;
-    for (const auto& [n, node] : nodes_) {
-        if (needed.contains(n)) continue;
+    const auto any_face_at = [&](VertexId n, auto test) {
         mesh.star(n, star);
-        const bool has_to_wait = std::ranges::any_of(star, [&](CellId e) {
+        return std::ranges::any_of(star, [&](CellId e) {
             for (int f = 0; f < mesh.num_faces(e); ++f)
-                if (waits(mesh, {e, f}, n)) return true;
+                if (test(FaceId{e, f})) return true;
             return false;
         });
-        if (!has_to_wait) finished.push_back(n);
-    }
+    };
+    for (const auto& [n, node] : nodes_)
+        if (any_face_at(n, [&](FaceId f) { return waits(mesh, f, n); })) at_work.insert(n);
+    // Cut faces at these nodes are known to be such while they have all their marked edges.
+    std::unordered_set<VertexId> needed = at_work;
+    for (const VertexId n : at_work)
+        any_face_at(n, [&](FaceId f) {
+            const int size = mesh.face_size(f);
+            bool has_node = false;
+            for (int p = 0; p < size; ++p) has_node |= mesh.face_corner(f, p) == n;
+            if (has_node && is_cut_face(mesh, f))
+                for (int p = 0; p < size; ++p) needed.insert(mesh.face_corner(f, p));
+            return false;
+        });
+    std::vector<VertexId> finished;
+    for (const auto& [n, node] : nodes_)
+        if (!needed.contains(n)) finished.push_back(n);
     for (const VertexId n : finished) nodes_.erase(n);
     for (const VertexId n : finished) forget(n);
+    // Other cuts divide marked edges by nodes that are not on this one.
+    for (auto& [n, others] : marked_)
+        if (!is_on(n)) std::erase_if(others, [&](VertexId other) { return !is_on(other); });
+    std::erase_if(marked_, [](const auto& entry) { return entry.second.empty(); });
 }
 
 }  // namespace incise::cutting

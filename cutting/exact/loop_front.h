@@ -45,8 +45,8 @@ class LoopFront {
         return it != marked_.end() && std::ranges::find(it->second, b) != it->second.end();
     }
     void mark(VertexId a, VertexId b);
-    /// Follows the division of an edge by a new node. The halves of a marked edge are marked, and
-    /// the node is on the cut.
+    /// Follows the division of an edge by a new node. The halves of a marked edge are marked. If
+    /// the edge is open in a cell, its halves are, and the node is on the cut.
     void divide(VertexId a, VertexId b, VertexId middle, double local_edge_length);
     /// Returns the other ends of the marked edges at a node.
     const std::vector<VertexId>& marked_at(VertexId n) const {
@@ -81,7 +81,8 @@ class LoopFront {
     bool is_on(const topology::Mesh& mesh) const;
     /// Follows an edit: copies of nodes are on the cut as their sources are.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
-    /// Forgets the nodes round which nothing waits and each path is closed.
+    /// Forgets the nodes round which nothing waits and each path is closed, if they are not at a
+    /// cut face of another node.
     void leave_behind(const topology::Mesh& mesh);
 
     static void archive(auto& ar, auto& self) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <queue>
 #include <unordered_map>
@@ -13,6 +14,7 @@
 #include "incise/cutting/exact/edge_intersections.h"
 #include "incise/cutting/exact/edge_list.h"
 #include "incise/cutting/exact/triangulation.h"
+#include "incise/cutting/exact/turn.h"
 #include "incise/topology/darts.h"
 #include "incise/topology/mesh_edit.h"
 
@@ -50,6 +52,7 @@ class LoopSplitter {
           front_(front),
           resting_(resting),
           snap_(options.snap),
+          is_swept_(surface.ends_inside({MovingPoint{}, MovingPoint{}, MovingPoint{}}).has_value()),
           num_old_nodes_(mesh.node_capacity()) {}
 
     Split run() {
@@ -57,10 +60,8 @@ class LoopSplitter {
         if (pending_.empty()) return {};
         edit_.emplace(mesh_);
         divide_warped_faces();
-        const bool is_swept =
-            surface_.ends_inside({MovingPoint{}, MovingPoint{}, MovingPoint{}}).has_value();
-        while (!queue_.empty()) divide_next(is_swept);
-        if (!is_swept) join_all();
+        while (!queue_.empty()) divide_next();
+        if (!is_swept_) join_all();
         open_faces();
         Split result{edit_->commit(), report_};
         front_.apply(mesh_, result.changes);
@@ -69,17 +70,6 @@ class LoopSplitter {
     }
 
   private:
-    struct Turn {
-        double time, length;
-        Edge edge;
-        // In the order in which the blade comes to edges. Of edges that it meets at once, the
-        // longest comes first, and of equal ones the lowest.
-        bool operator<(const Turn& other) const {
-            if (time != other.time) return time > other.time;
-            return length != other.length ? length < other.length : other.edge < edge;
-        }
-    };
-
     MovingPoint point(VertexId n) const {
         if (n.index() < num_old_nodes_)
             return {tissue_.before[n.index()], tissue_.after[n.index()]};
@@ -103,7 +93,7 @@ class LoopSplitter {
     void find_crossed_edges();
     void receive(const Edge& edge, EdgeIntersections intersections);
     void divide_warped_faces();
-    void divide_next(bool is_swept);
+    void divide_next();
     bool is_at_own_node(const Edge& edge, const EdgeIntersection& intersection) const;
     VertexId divide_edge(VertexId a, VertexId b, double place);
     std::optional<VertexId> waiting_partner(const LoopFront& front, FaceId f, VertexId v) const;
@@ -112,12 +102,21 @@ class LoopSplitter {
     void join_all();
     void close(LoopFront& front, CellId e, VertexId v, VertexId w);
     std::vector<VertexId> path_from(const LoopFront& front, CellId e, VertexId v, VertexId w) const;
-    void pass_edge(SuspendedLoops& blade, FaceId f, VertexId v, VertexId w);
+    /// One of the two parts of a divided face.
+    struct Half {
+        std::vector<VertexId> waiting;  ///< nodes of a cut
+        std::optional<Vec3> pierced;    ///< where its blade passes through, m
+        Vec3 normal;                    ///< times twice the area, m2
+    };
+    Half half_of(const SuspendedLoops& blade, FaceId f) const;
+    void pass_edges(SuspendedLoops& blade, CellId e, std::vector<VertexId>& path);
     void open_faces();
+    /// Passes the front of each other cut.
     template <class Visit>
     void for_other_cuts(const LoopFront& front, Visit visit) {
+        if (&front != &front_) visit(front_);
         for (SuspendedLoops& blade : resting_)
-            if (&blade.front != &front) visit(blade);
+            if (&blade.front != &front) visit(blade.front);
     }
     std::vector<CellId> star(VertexId v) const {
         std::vector<CellId> cells;
@@ -132,6 +131,7 @@ class LoopSplitter {
     LoopFront& front_;
     const std::span<SuspendedLoops> resting_;
     const double snap_;
+    const bool is_swept_;
     const std::size_t num_old_nodes_;
     std::optional<MeshEdit> edit_;  // once there is something to do
 
@@ -211,7 +211,7 @@ bool LoopSplitter::is_at_own_node(const Edge& edge, const EdgeIntersection& inte
     return is_at(edge.a, intersection.place) || is_at(edge.b, 1.0 - intersection.place);
 }
 
-void LoopSplitter::divide_next(bool is_swept) {
+void LoopSplitter::divide_next() {
     const Edge edge = queue_.top().edge;
     queue_.pop();
     const auto found = pending_.find(edge);
@@ -245,7 +245,7 @@ void LoopSplitter::divide_next(bool is_swept) {
     }
     receive({edge.a, middle}, std::move(to_a));
     receive({edge.b, middle}, std::move(to_b));
-    if (is_swept) join_at(front_, middle);
+    if (is_swept_) join_at(front_, middle);
 }
 
 /// Divides an edge for all cuts.
@@ -332,6 +332,10 @@ void LoopSplitter::join_all() {
 void LoopSplitter::join(LoopFront& front, FaceId f, VertexId v, VertexId w) {
     const FaceId other = mesh_.neighbor(f);
     const auto have_edge = [&](CellId e) { return find_dart(mesh_, e, v, w).is_valid(); };
+    std::vector<LoopFront*> on_cuts;  // on which the face lies: its new edges do, too
+    for_other_cuts(front, [&](LoopFront& cut) {
+        if (cut.is_cut_face(mesh_, f)) on_cuts.push_back(&cut);
+    });
     std::vector<VertexId> path{v, w};
     if (have_edge(f.cell) || (other.is_valid() && have_edge(other.cell))) {
         const std::size_t row = mesh_.node_capacity();
@@ -355,10 +359,15 @@ void LoopSplitter::join(LoopFront& front, FaceId f, VertexId v, VertexId w) {
         front.mark(path[i], path[i + 1]);
         front.set_open(f.cell, path[i], path[i + 1]);
         if (other.is_valid()) front.set_open(other.cell, path[i], path[i + 1]);
+        for (LoopFront* cut : on_cuts) cut->mark(path[i], path[i + 1]);
     }
-    for_other_cuts(front, [&](SuspendedLoops& blade) { pass_edge(blade, f, v, w); });
-    close(front, f.cell, v, path[1]);
-    if (other.is_valid()) close(front, other.cell, v, path[1]);
+    for (SuspendedLoops& blade : resting_)
+        if (&blade.front != &front) pass_edges(blade, f.cell, path);
+    const VertexId end = path[1];
+    // Other cuts can have divided the cells meanwhile.
+    std::vector<CellId> cells;
+    append_cells_at_edge(mesh_, mesh_.incident_element(v), v, end, cells);
+    for (const CellId e : cells) close(front, e, v, end);
 }
 
 /// Returns the closed path of open edges of a cell that begins with an edge; empty if it is not
@@ -385,8 +394,8 @@ std::vector<VertexId> LoopSplitter::path_from(const LoopFront& front, CellId e, 
 
 /// Divides a cell if the edge completes a closed path.
 void LoopSplitter::close(LoopFront& front, CellId e, VertexId v, VertexId w) {
-    // What passes the new edge can have divided it, and the cell.
-    if (!find_dart(mesh_, e, v, w).is_valid()) return;
+    if (std::ranges::find(front.open_edges(e), edge_between(v, w)) == front.open_edges(e).end())
+        return;
     const std::vector<VertexId> path = path_from(front, e, v, w);
     if (path.empty()) return;
     const CellId added = edit_->divide_cell(e, path);
@@ -398,17 +407,16 @@ void LoopSplitter::close(LoopFront& front, CellId e, VertexId v, VertexId w) {
             front.set_closed(part, path[i], path[(i + 1) % path.size()]);
     const FaceId face{added, mesh_.num_faces(added) - 1};
     bool is_waited_in = false;
-    for_other_cuts(front, [&](SuspendedLoops& blade) {
-        for (const VertexId n : path) {
-            if (!blade.front.waits(mesh_, face, n)) continue;
-            if (const auto partner = waiting_partner(blade.front, face, n)) {
-                join(blade.front, face, n, *partner);
-                return;
-            }
-            is_waited_in = true;
-        }
+    for_other_cuts(front, [&](LoopFront& cut) {
+        for (const VertexId n : path) is_waited_in |= cut.waits(mesh_, face, n);
     });
-    if (is_waited_in) return;  // its triangles would not know which of them it waits in
+    if (is_waited_in) {  // its triangles would not know which of them it waits in
+        for_other_cuts(front, [&](LoopFront& cut) {
+            if (&cut != &front_ || is_swept_)
+                for (const VertexId n : path) join_at(cut, n);
+        });
+        return;
+    }
     const double length = front.local_edge_length(v);
     triangulate(
         mesh_, *edit_, face, [&](VertexId a, VertexId b) { front.mark(a, b); },
@@ -418,27 +426,54 @@ void LoopSplitter::close(LoopFront& front, CellId e, VertexId v, VertexId w) {
         });
 }
 
-/// Lets another cut pass a new edge of a face in which it waits: if the edge is between the node
-/// that waits and the blade, the cut goes through it.
-void LoopSplitter::pass_edge(SuspendedLoops& blade, FaceId f, VertexId v, VertexId w) {
-    const Dart d = find_dart(mesh_, f, v, w).is_valid() ? find_dart(mesh_, f, v, w)
-                                                        : find_dart(mesh_, f, w, v);
-    if (!d.is_valid()) return;
-    int count = 0;
-    bool is_pierced = false;
+/// Lets another cut pass the edges that have divided a face of a cell, if they are between a node
+/// that waits there and the blade. Adds the node that it makes to the path of the edges.
+void LoopSplitter::pass_edges(SuspendedLoops& blade, CellId e, std::vector<VertexId>& path) {
+    const Dart along = find_dart(mesh_, e, path[0], path[1]);
+    if (!along.is_valid()) return;
+    const Half halves[] = {half_of(blade, along.face), half_of(blade, opposite(mesh_, along).face)};
+    for (const std::size_t k : {0u, 1u}) {
+        const Half &start = halves[k], &end = halves[1 - k];
+        if (start.waiting.size() % 2 == 0 || start.pierced || !end.pierced) continue;
+        // The edge that lies best between the node and the blade.
+        const Vec3 to_blade = *end.pierced - blade.now(point(start.waiting.front()));
+        const Vec3 across = start.normal.cross(to_blade);
+        std::size_t best = 0;
+        double place = 0.5, least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+            const double from = across.dot(blade.now(point(path[i])) - *end.pierced),
+                         to = across.dot(blade.now(point(path[i + 1])) - *end.pierced);
+            const double at = from == to ? 0.5 : from / (from - to);
+            const double beside = std::abs(at - 0.5);
+            if (beside >= least) continue;
+            least = beside;
+            best = i;
+            place = std::clamp(at, least_place, 1.0 - least_place);
+        }
+        const double length = rest_length(path[best], path[best + 1]);
+        const VertexId middle = divide_edge(path[best], path[best + 1], place);
+        path.insert(path.begin() + static_cast<std::ptrdiff_t>(best) + 1, middle);
+        blade.front.put_on(middle, length);
+        join_at(blade.front, middle);
+        return;
+    }
+}
+
+/// Returns what another cut has in a face.
+LoopSplitter::Half LoopSplitter::half_of(const SuspendedLoops& blade, FaceId f) const {
+    Half half{{}, std::nullopt, Vec3::Zero()};
     const int size = mesh_.face_size(f);
-    for (int p = 0; p < size; ++p)
-        count += blade.front.waits(mesh_, f, mesh_.face_corner(f, p)) ? 1 : 0;
-    for (int p = 2; p < size; ++p)
-        is_pierced ^=
-            blade
-                .is_inside({point(mesh_.face_corner(f, 0)), point(mesh_.face_corner(f, p - 1)),
-                            point(mesh_.face_corner(f, p))})
-                .value_or(false);
-    if (count % 2 == (is_pierced ? 1 : 0)) return;
-    const VertexId middle = divide_edge(v, w, 0.5);
-    blade.front.put_on(middle, rest_length(v, w));
-    join_at(blade.front, middle);
+    const auto at = [&](int p) { return point(mesh_.face_corner(f, p)); };
+    for (int p = 0; p < size; ++p) {
+        if (blade.front.waits(mesh_, f, mesh_.face_corner(f, p)))
+            half.waiting.push_back(mesh_.face_corner(f, p));
+        if (p < 2) continue;
+        half.normal +=
+            (blade.now(at(p - 1)) - blade.now(at(0))).cross(blade.now(at(p)) - blade.now(at(0)));
+        if (const auto x = blade.point_inside({at(0), at(p - 1), at(p)}))
+            half.pierced = half.pierced ? std::nullopt : x;
+    }
+    return half;
 }
 
 /// Opens the faces on this cut and on the suspended cuts.

@@ -22,6 +22,7 @@
 #include "incise/cutting/exact/recognition.h"
 #include "incise/cutting/exact/separation.h"
 #include "incise/cutting/exact/surface_boundary.h"
+#include "incise/cutting/exact/turn.h"
 #include "incise/topology/mesh_edit.h"
 
 namespace incise::cutting {
@@ -105,18 +106,6 @@ class Splitter {
         CellId element;  // one of those that have the edge
         EdgeIntersections intersections;
     };
-    struct Turn {
-        double time, length;
-        Edge edge;
-        // In the order in which the blade comes to edges, so that the number of steps does not
-        // matter. Of edges that it meets at once, the longest comes first, and of equal ones the
-        // lowest.
-        bool operator<(const Turn& other) const {
-            if (time != other.time) return time > other.time;
-            return length != other.length ? length < other.length : other.edge < edge;
-        }
-    };
-
     MovingPoint point(VertexId n) const {
         if (n.index() < num_old_nodes_)
             return {tissue_.before[n.index()], tissue_.after[n.index()]};

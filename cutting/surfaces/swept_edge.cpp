@@ -91,6 +91,17 @@ std::optional<bool> SweptEdge::ends_inside(const std::array<MovingPoint, 3>& tri
     return is_odd;
 }
 
+std::optional<Vec3> SweptEdge::end_point_inside(const std::array<MovingPoint, 3>& triangle) const {
+    const Vec3 &a = triangle[0][1], &b = triangle[1][1], &c = triangle[2][1];
+    const Vec3 normal = (b - a).cross(c - a);
+    for (const MovingSegment& s : segments_) {
+        if (!pierces(s.a[1], s.b[1], {a, b, c})) continue;
+        const double from = normal.dot(a - s.a[1]), length = normal.dot(s.b[1] - s.a[1]);
+        return s.a[1] + (length != 0.0 ? from / length : 0.5) * (s.b[1] - s.a[1]);
+    }
+    return std::nullopt;
+}
+
 bool SweptEdge::ends_near(const Vec3& x, double radius) const {
     for (const MovingSegment& s : segments_) {
         const Vec3 along = s.b[1] - s.a[1], from = x - s.a[1];

@@ -28,14 +28,13 @@ enum class CuttingForce { report, apply };
 
 /// What the kind of a tool tells about it.
 struct ToolTraits {
-    const char* kind;           ///< its name in scenarios
-    bool cuts = false;          ///< it edits the mesh
-    bool touches = false;       ///< tissue exerts a force on it, whatever its values are
-    bool only_divides = false;  ///< it needs tetrahedra, as it cannot open faces instead
-    bool has_pose = true;       ///< without one it is where the tissue is
-    bool is_at_once = false;    ///< it lies in the frame of the world, and cuts in one step
-    bool closes = false;        ///< it closes and opens
-    bool holds = false;         ///< it holds tissue while it is closed, and can lose it
+    const char* kind;         ///< its name in scenarios
+    bool cuts = false;        ///< it edits the mesh
+    bool touches = false;     ///< tissue exerts a force on it, whatever its values are
+    bool has_pose = true;     ///< without one it is where the tissue is
+    bool is_at_once = false;  ///< it lies in the frame of the world, and cuts in one step
+    bool closes = false;      ///< it closes and opens
+    bool holds = false;       ///< it holds tissue while it is closed, and can lose it
     const char* article = "a ";
 };
 
@@ -62,8 +61,7 @@ struct Carver {
 
 /// A tool that divides elements along a plane, at once. The plane is in the frame of the world.
 struct PlaneCut {
-    static constexpr ToolTraits traits{
-        .kind = "cut", .cuts = true, .only_divides = true, .is_at_once = true};
+    static constexpr ToolTraits traits{.kind = "cut", .cuts = true, .is_at_once = true};
     Vec3 point = Vec3::Zero();    ///< m
     Vec3 normal = Vec3::UnitZ();  ///< of any length above 0
     double snap = default_snap;   ///< see SplitOptions
@@ -73,8 +71,7 @@ struct PlaneCut {
 /// A tool that divides elements along a triangulated surface, at once. The surface is in the frame
 /// of the world, m.
 struct SurfaceCut {
-    static constexpr ToolTraits traits{
-        .kind = "cut", .cuts = true, .only_divides = true, .is_at_once = true};
+    static constexpr ToolTraits traits{.kind = "cut", .cuts = true, .is_at_once = true};
     topology::SurfaceData surface;
     double snap = default_snap;  ///< see SplitOptions
     static void archive(auto& ar, auto& self) { ar(self.surface, self.snap); }
@@ -121,7 +118,7 @@ struct Suture {
 /// blades, on a line that goes evenly from the pivot to the tips.
 struct Scissors {
     static constexpr ToolTraits traits{
-        .kind = "scissors", .cuts = true, .only_divides = true, .closes = true, .article = ""};
+        .kind = "scissors", .cuts = true, .closes = true, .article = ""};
     static constexpr double least_angle = 0.01, largest_angle = 2.5;  ///< rad, the second excluded
     double length = 0.0;         ///< of a blade, from the pivot to its tip, m
     double angle = 0.6;          ///< between the blades when they are open, rad

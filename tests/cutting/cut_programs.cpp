@@ -137,4 +137,15 @@ Vec3 SmoothField::at(const Vec3& X) const {
     return u;
 }
 
+void deform(physics::Model& model, double strain, double size, Random& random) {
+    const SmoothField displacement(strain, size, random), motion(1.0, size, random);
+    std::vector<Vec3> x, v;
+    for (std::size_t n = 0; n < model.positions().size(); ++n) {
+        const Vec3& X = model.fragments().rest_position(NodeId(n));
+        x.push_back(model.positions()[n] + displacement.at(X));
+        v.push_back(motion.at(X) + random.vector(0.1 * size));
+    }
+    model.set_state(x, v, 0.0);
+}
+
 }  // namespace incise::cutting

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "incise/physics/body/model.h"
 #include "split_body.h"
 #include "support/mesh_families.h"
 
@@ -43,5 +44,9 @@ class SmoothField {
     Eigen::Matrix3d gradient_;
     std::array<Wave, 3> waves_;
 };
+
+/// Moves a body smoothly, and gives it some velocity.
+/// @param size  of the body, m
+void deform(physics::Model& model, double strain, double size, test::Random& random);
 
 }  // namespace incise::cutting

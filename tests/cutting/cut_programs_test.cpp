@@ -45,7 +45,7 @@ class Patient {
         Box box;
         for (const Vec3& X : mesh_.rest_positions()) box.extend(X);
         size_ = box.diagonal().norm();
-        if (random_.below(2) == 0) deform(0.5);
+        if (random_.below(2) == 0) deform(model_, 0.5, size_, random_);
         is_at_rest_ = false;
         if (std::equal(mesh_.rest_positions().begin(), mesh_.rest_positions().end(),
                        model_.positions().begin()))
@@ -86,24 +86,12 @@ class Patient {
         return positions;
     }
 
-    /// Moves the body smoothly, and gives it some velocity.
-    void deform(double strain) {
-        const SmoothField displacement(strain, size_, random_), motion(1.0, size_, random_);
-        std::vector<Vec3> x, v;
-        for (std::size_t n = 0; n < model_.positions().size(); ++n) {
-            const Vec3& X = model_.fragments().rest_position(NodeId(n));
-            x.push_back(model_.positions()[n] + displacement.at(X));
-            v.push_back(motion.at(X) + random_.vector(0.1 * size_));
-        }
-        model_.set_state(x, v, 0.0);
-    }
-
     void carry_out(const RandomCut& cut) {
         CutFront front;
         for (const auto& surface : cut.stroke) {
             const auto now = model_.mesh_positions();
             const std::vector<Vec3> before(now.begin(), now.end());
-            if (!is_at_rest_) deform(0.02);
+            if (!is_at_rest_) deform(model_, 0.02, size_, random_);
             cut_and_follow(*surface, front, before);
         }
         if (!cut.end) return;

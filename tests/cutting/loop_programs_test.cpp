@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <numeric>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,7 +42,7 @@ class Patient {
         Box box;
         for (const Vec3& X : mesh_.rest_positions()) box.extend(X);
         size_ = box.diagonal().norm();
-        if (random_.below(2) == 0) deform(0.3);
+        if (random_.below(2) == 0) deform(model_, 0.3, size_, random_);
     }
 
     /// @param has_surfaces  also with spheres and wavy sheets, which bend within a cell
@@ -82,22 +84,14 @@ class Patient {
         return found;
     }
 
+    static double sum(std::span<const double> values) {
+        return std::accumulate(values.begin(), values.end(), 0.0);
+    }
+
     double volume() const {
         double sum = 0.0;
         for (const CellId e : mesh_.elements()) sum += topology::rest_volume(mesh_, e);
         return sum;
-    }
-
-    /// Moves the body smoothly, and gives it some velocity.
-    void deform(double strain) {
-        const SmoothField displacement(strain, size_, random_), motion(1.0, size_, random_);
-        std::vector<Vec3> x, v;
-        for (std::size_t n = 0; n < model_.positions().size(); ++n) {
-            const Vec3& X = model_.fragments().rest_position(NodeId(n));
-            x.push_back(model_.positions()[n] + displacement.at(X));
-            v.push_back(motion.at(X) + random_.vector(0.1 * size_));
-        }
-        model_.set_state(x, v, 0.0);
     }
 
     void carry_out(const RandomCut& cut) {
@@ -105,7 +99,7 @@ class Patient {
         for (const auto& surface : cut.stroke) {
             const auto now = model_.mesh_positions();
             const std::vector<Vec3> positions_before(now.begin(), now.end());
-            deform(0.02);
+            deform(model_, 0.02, size_, random_);
             const Balance before(model_);
             const Split done = split_cells(
                 mesh_, {mesh_, positions_before, model_.mesh_positions()}, *surface, front, {}, {});
@@ -115,6 +109,8 @@ class Patient {
             ASSERT_EQ(faults(), std::vector<std::string>{});
             EXPECT_NEAR(volume(), rest_volume_, 1e-12 * rest_volume_);
             ASSERT_EQ(fragments::validate(model_.fragments(), mesh_), std::vector<std::string>{});
+            EXPECT_NEAR(sum(model_.structure().mesh_masses()), sum(model_.masses()),
+                        1e-12 * sum(model_.masses()));
             has_joins_ |= edits_.back().physics.has_joins();
             if (!has_joins_) expect_kept(before, model_, edits_.back(), false);
             expect_equal_to_a_fresh_one(model_, table_);

@@ -267,6 +267,21 @@ TEST(LoopSplitter, PartsABodyAlongThreePlanes) {
         });
 }
 
+/// An edge that moves in a plane: its middle goes along v, its ends are at +-u.
+struct StraightPath {
+    Divider plane;
+    Vec3 u, v;
+    explicit StraightPath(const Divider& p, double turn = 0.0) : plane(p) {
+        const Vec3 a = p.normal.unitOrthogonal(), b = p.normal.normalized().cross(a);
+        u = std::cos(turn) * a + std::sin(turn) * b;
+        v = -std::sin(turn) * a + std::cos(turn) * b;
+    }
+    std::vector<Vec3> edge(double along, double reach = 3.0) const {
+        const Vec3 middle = plane.point + along * v;
+        return {middle - reach * u, middle + reach * u};
+    }
+};
+
 /// A body at rest that a cutter cuts.
 class CutBody : public Body {
   public:
@@ -289,27 +304,17 @@ class CutBody : public Body {
         cutter.follow_motion(mesh, positions);
         return follow(cutter.split(cut, mesh, from, to));
     }
+    void lead(CutId cut, const StraightPath& path, double from, double to, int num_steps) {
+        for (int i = 0; i < num_steps; ++i)
+            move(cut, path.edge(from + (to - from) * i / num_steps),
+                 path.edge(from + (to - from) * (i + 1) / num_steps));
+    }
     Split cut_along(const CutSurface& surface) {
         cutter.follow_motion(mesh, positions);
         return follow(cutter.split(mesh, surface, default_snap));
     }
 
     Cutter cutter;
-};
-
-/// An edge that moves in a plane: its middle goes along v, its ends are at +-u.
-struct StraightPath {
-    Divider plane;
-    Vec3 u, v;
-    explicit StraightPath(const Divider& p, double turn = 0.0) : plane(p) {
-        const Vec3 a = p.normal.unitOrthogonal(), b = p.normal.normalized().cross(a);
-        u = std::cos(turn) * a + std::sin(turn) * b;
-        v = -std::sin(turn) * a + std::cos(turn) * b;
-    }
-    std::vector<Vec3> edge(double along, double reach = 3.0) const {
-        const Vec3 middle = plane.point + along * v;
-        return {middle - reach * u, middle + reach * u};
-    }
 };
 
 TEST(LoopSplitter, CutsNothingMoreAtTheSamePlace) {
@@ -322,10 +327,7 @@ TEST(LoopSplitter, CutsNothingMoreAtTheSamePlace) {
             for (int pass = 0; pass < 6; ++pass) {
                 const StraightPath path(planes[0], 0.3 * pass);
                 const CutId cut = body.cutter.begin_cut(default_snap);
-                const int num_steps = 5 + 3 * pass;
-                for (int i = 0; i < num_steps; ++i)
-                    body.move(cut, path.edge(-2.0 + 4.0 * i / num_steps),
-                              path.edge(-2.0 + 4.0 * (i + 1) / num_steps));
+                body.lead(cut, path, -2.0, 2.0, 5 + 3 * pass);
                 EXPECT_FALSE(body.cutter.is_in_tissue(cut));
                 body.cutter.remove_cut(cut);
                 if (pass == 0) num_cells = body.mesh.num_elements();
@@ -348,14 +350,11 @@ TEST(LoopSplitter, MayBeWithdrawnAndComeBack) {
             const CutId cut = body.cutter.begin_cut(default_snap);
             double at = -2.0;
             for (const double to : {0.1, -0.15, 0.3, -2.0, 0.35, 0.2, 2.0, -2.0}) {
-                constexpr int num_steps = 9;
-                const double from = at;
-                for (int i = 0; i < num_steps; ++i)
-                    body.move(cut, path.edge(from + (to - from) * i / num_steps),
-                              path.edge(from + (to - from) * (i + 1) / num_steps));
+                body.lead(cut, path, at, to, 9);
                 at = to;
             }
             expect_parts(body, planes, 3e-3);
+            EXPECT_FALSE(body.cutter.is_in_tissue(cut));
         },
         false);
 }
@@ -404,6 +403,32 @@ TEST(LoopSplitter, StopsOnNodesEdgesAndFaces) {
                 if (v > 5e-3) large.push_back(v);
             ASSERT_EQ(large.size(), 2u);
             EXPECT_NEAR(large.front(), expected.front(), 1e-2);
+        },
+        false);
+}
+
+/// Two blades go by turns through a body, and each crosses what the other has not finished. Not all
+/// bodies are parted along both.
+TEST(LoopSplitter, StaysSoundUnderTwoBladesAtATime) {
+    for_bodies(
+        6, 4,
+        [](Body& whole, Random& random) {
+            CutBody body(whole.data);
+            const auto planes = random_planes(random, 2);
+            const StraightPath paths[] = {StraightPath(planes[0]), StraightPath(planes[1], 1.0)};
+            const CutId cuts[] = {body.cutter.begin_cut(default_snap),
+                                  body.cutter.begin_cut(default_snap)};
+            constexpr int num_steps = 30;
+            for (int i = 0; i < num_steps; ++i) {
+                body.cutter.follow_motion(body.mesh, body.positions);
+                for (const std::size_t k : {0u, 1u})
+                    body.follow(body.cutter.split(cuts[k], body.mesh,
+                                                  paths[k].edge(-2.0 + 4.0 * i / num_steps),
+                                                  paths[k].edge(-2.0 + 4.0 * (i + 1) / num_steps)));
+            }
+            EXPECT_NEAR(Body::sum(body.rest_volumes()), body.volume_before, 1e-7);
+            EXPECT_GT(body.rest_volumes().size(), 1u);
+            body.expect_replay();
         },
         false);
 }
