@@ -62,15 +62,18 @@ void Cutter::follow_motion(const Mesh& mesh, std::span<const Vec3> positions) {
     for (std::size_t n = 0; n < positions.size(); ++n)
         largest = std::max(largest, (positions[n] - before_.values()[n]).squaredNorm());
     boxes_.move(mesh, positions, std::sqrt(largest));
-    for (const auto& [n, opened] : opened_) {
-        const Vec3& x = positions[n.index()];
-        Vec3 outwards = Vec3::Zero();
-        for (const auto& [previous, next] : opened.around)
-            outwards += (positions[next.index()] - x).cross(positions[previous.index()] - x);
-        if (const double norm = outwards.norm(); norm > 0.0)
-            now_[n] -= opened.margin / norm * outwards;
-    }
+    for (auto& [n, opened] : opened_) move_inside(n, opened, positions);
     for (Cut& cut : cuts_) cut.has_moved = false;
+}
+
+/// Moves a node of opened faces into the body by its margin.
+void Cutter::move_inside(VertexId n, OpenedNode& opened, std::span<const Vec3> positions) {
+    opened.is_moved = true;
+    const Vec3& x = positions[n.index()];
+    Vec3 outwards = Vec3::Zero();
+    for (const auto& [previous, next] : opened.around)
+        outwards += (positions[next.index()] - x).cross(positions[previous.index()] - x);
+    if (const double norm = outwards.norm(); norm > 0.0) now_[n] -= opened.margin / norm * outwards;
 }
 
 std::optional<topology::CellPoint> Cutter::tissue_at(const Mesh& mesh,
@@ -180,6 +183,13 @@ Split Cutter::split(Mesh& mesh, const CutSurface& surface, double snap) {
     if (has_loops_) {
         LoopFront front;
         auto resting = suspended_cuts(std::nullopt, &Cut::loops);
+        const bool has_new =
+            std::ranges::any_of(opened_, [](const auto& entry) { return !entry.second.is_moved; });
+        if (has_new && resting.empty()) {  // a blade at work has to see nodes move, not jump
+            const std::vector<Vec3> positions(now_.values().begin(), now_.values().end());
+            for (auto& [n, opened] : opened_)
+                if (!opened.is_moved) move_inside(n, opened, positions);
+        }
         return noted(split_cells(mesh, motion(mesh), surface, front, {snap}, resting),
                      std::nullopt);
     }
@@ -230,10 +240,13 @@ void Cutter::find_opened(const Mesh& mesh, const ChangeSet& changes) {
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
     std::vector<CellId> star;
     for (const VertexId n : touched) {
-        opened_.erase(n);
+        OpenedNode opened;
+        if (const auto before = opened_.find(n); before != opened_.end()) {
+            opened.is_moved = before->second.is_moved;
+            opened_.erase(before);
+        }
         mesh.star(n, star);
         const Vec3& x = mesh.rest_position(n);
-        OpenedNode opened;
         Vec3 outwards = Vec3::Zero();
         double area = 0.0, longest = 0.0;
         for (const CellId e : star)

@@ -142,9 +142,10 @@ class Cutter {
     /// A node on faces that a cut has opened: by how much it counts as lying inside, and its
     /// neighbours round each of the faces.
     struct OpenedNode {
-        double margin = 0.0;  // m
+        double margin = 0.0;    // m
+        bool is_moved = false;  // by the margin, in the present positions
         std::vector<std::pair<VertexId, VertexId>> around;
-        static void archive(auto& ar, auto& self) { ar(self.margin, self.around); }
+        static void archive(auto& ar, auto& self) { ar(self.margin, self.is_moved, self.around); }
     };
     /// An edit that this cutter has made and that apply() has not followed yet.
     struct OwnEdit {
@@ -155,12 +156,13 @@ class Cutter {
 
     Cut& cut_of(CutId id);
     const Cut& cut_of(CutId id) const;
-    /// Returns the other cuts in progress, whose fronts an edit by cut `worker` may touch.
     std::vector<Vec3> shifted(std::vector<Vec3> edge) const;
+    /// Returns the other cuts in progress, whose fronts an edit by cut `worker` may touch.
     template <class Front>
     std::vector<SuspendedCutOf<Front>> suspended_cuts(std::optional<std::size_t> worker,
                                                       Front Cut::*front);
     void find_opened(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+    void move_inside(VertexId n, OpenedNode& opened, std::span<const Vec3> positions);
     /// Returns the last motion of the tissue. Cost: that of the boxes that edits have changed.
     TissueMotion motion(const topology::Mesh& mesh) {
         boxes_.refresh(mesh, now_.values());

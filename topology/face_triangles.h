@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -30,20 +31,21 @@ class Ears {
         double most = 0.0;
         for (std::size_t p = 0; p < size(); ++p) {
             if (!may_cut(corner(p + size() - 1), corner(p + 1))) continue;
-            const double quality = quality_of(p);
+            double quality = quality_of(p);
+            if (size() == 4) quality = std::min(quality, quality_of((p + 2) % 4));  // the rest
             if (best && quality <= most) continue;
             best = p;
             most = quality;
         }
         return best;
     }
+    /// Returns the area of the triangle that is cut off with a corner, over the square of its
+    /// longest side. Negative if it is turned round, or has another corner inside.
+    double quality_of(std::size_t p) const;
     /// Cuts off a corner.
     void cut(std::size_t position);
 
   private:
-    /// Returns the area of the triangle that is cut off over the square of its longest side.
-    /// Negative if it is turned round, or has another corner inside.
-    double quality_of(std::size_t p) const;
     double doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) const {
         return (b - a).cross(c - a).dot(normal_);
     }

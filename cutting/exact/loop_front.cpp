@@ -46,9 +46,15 @@ void LoopFront::divide(const Mesh& mesh, CellId kept, CellId added) {
 }
 
 void LoopFront::divide(VertexId a, VertexId b, VertexId middle, double local_edge_length) {
+    for (const auto& [n, other] : {std::pair(a, b), std::pair(b, a)})
+        if (const auto it = idle_.find(n); it != idle_.end())
+            for (Edge& neighbours : it->second)
+                if (neighbours.a == other || neighbours.b == other)
+                    neighbours =
+                        edge_between(neighbours.a == other ? neighbours.b : neighbours.a, middle);
     if (owes(a, b)) {
         toggle_debt(a, b);
-        toggle_debt(a, middle);
+        toggle_debt(is_on(a) ? a : b, middle);  // it is of the node at which the blade has passed
     }
     if (!is_marked(a, b)) return;
     std::erase(marked_[a], b);
@@ -74,15 +80,37 @@ void LoopFront::toggle_debt(VertexId a, VertexId b) {
         debts_.erase(it);
 }
 
-bool LoopFront::waits(const Mesh& mesh, FaceId f, VertexId n) const {
-    if (!is_on(n)) return false;
+LoopFront::Corner LoopFront::corner(const Mesh& mesh, FaceId f, VertexId n) {
     const int size = mesh.face_size(f);
-    for (int p = 0; p < size; ++p) {
-        if (mesh.face_corner(f, p) != n) continue;
-        return !is_marked(n, mesh.face_corner(f, (p + 1) % size)) &&
-               !is_marked(n, mesh.face_corner(f, (p + size - 1) % size));
-    }
-    return false;
+    for (int p = 0; p < size; ++p)
+        if (mesh.face_corner(f, p) == n)
+            return {n, mesh.face_corner(f, (p + size - 1) % size),
+                    mesh.face_corner(f, (p + 1) % size)};
+    return {n, {}, {}};
+}
+
+void LoopFront::set_idle(const Corner& corner) {
+    idle_[corner.node].push_back(edge_between(corner.previous, corner.next));
+}
+
+void LoopFront::divide(const Corner& corner, VertexId end) {
+    if (!is_on(corner.node) || waits(corner)) return;
+    for (const VertexId neighbour : {corner.previous, corner.next})
+        if (const Corner part{corner.node, neighbour, end}; waits(part)) set_idle(part);
+}
+
+bool LoopFront::waits(const Mesh& mesh, FaceId f, VertexId n) const {
+    return is_on(n) && waits(corner(mesh, f, n));
+}
+
+bool LoopFront::waits(const Corner& corner) const {
+    const VertexId n = corner.node;
+    if (!corner.next.is_valid() || is_marked(n, corner.previous) || is_marked(n, corner.next))
+        return false;
+    const auto it = idle_.find(n);
+    return it == idle_.end() ||
+           std::ranges::find(it->second, edge_between(corner.previous, corner.next)) ==
+               it->second.end();
 }
 
 bool LoopFront::is_cut_face(const Mesh& mesh, FaceId f) const {
@@ -109,6 +137,7 @@ void LoopFront::forget(VertexId n) {
         }
         if (marked_[n].empty()) marked_.erase(n);
     }
+    idle_.erase(n);
     std::erase_if(debts_, [&](const Edge& edge) { return edge.a == n || edge.b == n; });
 }
 
@@ -152,6 +181,12 @@ void LoopFront::apply(const Mesh& mesh, const ChangeSet& changes) {
                 else
                     mark(a, b);
             }
+        const auto idle = std::exchange(idle_, {});
+        for (const auto& [n, corners] : idle)
+            for (const Edge& neighbours : corners)
+                for (const VertexId x : all_of(n))
+                    for (const VertexId a : all_of(neighbours.a))
+                        for (const VertexId b : all_of(neighbours.b)) set_idle({x, a, b});
         for (auto& [e, edges] : open_) {
             std::vector<Edge> now;
             for (const Edge& edge : edges)

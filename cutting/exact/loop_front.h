@@ -21,7 +21,9 @@ namespace incise::cutting {
 /// edges of a cell form a closed path, a face along the path divides the cell, and they are open no
 /// more. All edges of such a face are marked.
 ///
-/// A node waits in a face if neither of its two edges of the face is marked.
+/// A node waits in a face if neither of its two edges of the face is marked, unless the cut is
+/// known not to enter the face there: the corner is then *idle*. A face that another cut divides
+/// has such corners, and so has a face that another cut makes beside this one.
 class LoopFront {
   public:
     struct Node {
@@ -62,6 +64,17 @@ class LoopFront {
     }
     void toggle_debt(VertexId a, VertexId b);
 
+    /// A node of a face, between its neighbours round the face.
+    struct Corner {
+        VertexId node, previous, next;
+    };
+    static Corner corner(const topology::Mesh& mesh, FaceId f, VertexId n);
+    /// Says that the cut does not enter the face at a corner.
+    void set_idle(const Corner& corner);
+    /// Follows the division of a face by an edge from a node of it to another one: a node that did
+    /// not wait in the face waits in none of its parts.
+    void divide(const Corner& corner, VertexId end);
+
     /// True if the node waits in the face: see above. @pre  it is a corner of the face
     bool waits(const topology::Mesh& mesh, FaceId f, VertexId n) const;
     /// True if all edges of the face are marked.
@@ -86,14 +99,16 @@ class LoopFront {
     void leave_behind(const topology::Mesh& mesh);
 
     static void archive(auto& ar, auto& self) {
-        ar(self.nodes_, self.marked_, self.open_, self.debts_);
+        ar(self.nodes_, self.marked_, self.idle_, self.open_, self.debts_);
     }
 
   private:
+    bool waits(const Corner& corner) const;
     void forget(VertexId n);
 
     std::unordered_map<VertexId, Node> nodes_;
     std::unordered_map<VertexId, std::vector<VertexId>> marked_;  // each edge in both directions
+    std::unordered_map<VertexId, std::vector<Edge>> idle_;        // the neighbours at idle corners
     std::unordered_map<CellId, std::vector<Edge>> open_;
     std::vector<Edge> debts_;  // in ascending order
 };

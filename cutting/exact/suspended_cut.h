@@ -21,21 +21,10 @@ struct SuspendedCutOf {
     /// before.
     bool has_moved;
 
-    /// Returns where a point of the tissue is when the blade is where it is, m.
-    const Vec3& now(const MovingPoint& x) const { return x[has_moved ? 1 : 0]; }
     /// True if the blade's edge passes through the triangle an odd number of times.
-    std::optional<bool> is_inside(const std::array<MovingPoint, 3>& triangle) const {
-        return edge.ends_inside(at_rest(triangle));
-    }
-    /// Returns a point where it does so.
-    std::optional<Vec3> point_inside(const std::array<MovingPoint, 3>& triangle) const {
-        return edge.end_point_inside(at_rest(triangle));
-    }
-
-  private:
-    std::array<MovingPoint, 3> at_rest(std::array<MovingPoint, 3> triangle) const {
-        for (MovingPoint& x : triangle) x[0] = x[1] = now(x);
-        return triangle;
+    std::optional<bool> is_inside(std::array<MovingPoint, 3> triangle) const {
+        for (MovingPoint& x : triangle) x[0] = x[1] = x[has_moved ? 1 : 0];
+        return edge.ends_inside(triangle);
     }
 };
 

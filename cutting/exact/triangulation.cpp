@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/cutting/exact/triangulation.h"
 
-#include <vector>
+#include <cmath>
 
 #include "incise/topology/darts.h"
 #include "incise/topology/face_triangles.h"
@@ -21,29 +21,13 @@ bool have_edge(const Mesh& mesh, FaceId f, VertexId a, VertexId b) {
 
 }  // namespace
 
-void triangulate(
-    const Mesh& mesh, topology::MeshEdit& edit, FaceId face,
-    const std::function<void(VertexId, VertexId)>& on_edge,
-    const std::function<void(VertexId, std::span<const std::pair<VertexId, double>>)>& on_node) {
-    while (mesh.face_size(face) > 3) {
-        const topology::Ears ears(mesh, face);
-        if (const auto best = ears.best([&](VertexId before, VertexId after) {
-                return !have_edge(mesh, face, before, after);
-            })) {
-            const VertexId before = ears.corner(*best + ears.size() - 1),
-                           after = ears.corner(*best + 1);
-            edit.divide_face(face, after, before);  // the rest keeps the number
-            on_edge(before, after);
-            continue;
-        }
-        if (ears.size() > topology::max_corners) return;
-        std::vector<std::pair<VertexId, double>> sources;
-        for (std::size_t p = 0; p < ears.size(); ++p)
-            sources.emplace_back(ears.corner(p), 1.0 / static_cast<double>(ears.size()));
-        const VertexId centre = edit.divide_face_at_centre(face);
-        on_node(centre, sources);
-        for (const auto& [corner, weight] : sources) on_edge(corner, centre);
-    }
+std::optional<std::pair<VertexId, VertexId>> next_ear(const Mesh& mesh, FaceId face) {
+    const topology::Ears ears(mesh, face);
+    const auto best = ears.best(
+        [&](VertexId before, VertexId after) { return !have_edge(mesh, face, before, after); });
+    constexpr double flat = 1e-12;  // by rounding: corners on a line
+    if (!best || std::abs(ears.quality_of(*best)) < flat) return std::nullopt;
+    return std::pair(ears.corner(*best + 1), ears.corner(*best + ears.size() - 1));
 }
 
 }  // namespace incise::cutting

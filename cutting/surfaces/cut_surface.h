@@ -55,6 +55,10 @@ class CutSurface {
     virtual std::optional<bool> ends_inside(const std::array<MovingPoint, 3>&) const {
         return std::nullopt;
     }
+    /// Returns a point of the triangle where the boundary does so, m.
+    virtual std::optional<Vec3> end_point_inside(const std::array<MovingPoint, 3>&) const {
+        return std::nullopt;
+    }
     /// Returns false only if the cut does not go on within `radius`, m, of a point. The point is
     /// that after the step.
     virtual bool ends_near(const Vec3&, double /*radius*/) const { return true; }

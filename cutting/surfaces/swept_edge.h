@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <array>
-#include <optional>
 #include <vector>
 
 #include "incise/cutting/surfaces/cut_surface.h"
@@ -21,8 +19,7 @@ class SweptEdge final : public CutSurface {
     void append_crossings(const MovingPoint& a, const MovingPoint& b,
                           std::vector<Crossing>& crossings) const override;
     std::optional<bool> ends_inside(const std::array<MovingPoint, 3>& triangle) const override;
-    /// Returns a point where the edge, at the end of its path, passes through a triangle.
-    std::optional<Vec3> end_point_inside(const std::array<MovingPoint, 3>& triangle) const;
+    std::optional<Vec3> end_point_inside(const std::array<MovingPoint, 3>& triangle) const override;
     bool ends_near(const Vec3& x, double radius) const override;
 
   private:

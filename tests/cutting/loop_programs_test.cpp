@@ -150,7 +150,7 @@ MeshData of_family() {
 const Programs all_programs[] = {
     {"cube of hexahedra", cube<Bricks::hexahedra, 0>, 40},
     {"cube of wedges", cube<Bricks::wedges, 0>, 30},
-    {"cube of pyramids", cube<Bricks::pyramids, 0>, 20},
+    {"cube of pyramids", cube<Bricks::pyramids, 0>, 20, false},
     {"mixed cube", cube<Bricks::mixed, 0>, 30, false},
     {"jittered cube of hexahedra", cube<Bricks::hexahedra, 15>, 40, false},
     {"jittered mixed cube", cube<Bricks::mixed, 15>, 30, false},

@@ -340,6 +340,25 @@ TEST(LoopSplitter, CutsNothingMoreAtTheSamePlace) {
         false);
 }
 
+/// Also in the same step, before the tissue has moved.
+TEST(LoopSplitter, CutsNothingMoreAlongTheSamePlane) {
+    for (const bool has_steps : {true, false})
+        for_bodies(
+            4, 4,
+            [&](Body& whole, Random& random) {
+                CutBody body(whole.data);
+                const auto planes = random_planes(random, 1);
+                body.cutter.follow_motion(body.mesh, body.positions);
+                for (int pass = 0; pass < 4; ++pass) {
+                    if (has_steps) body.cutter.follow_motion(body.mesh, body.positions);
+                    body.follow(body.cutter.split(
+                        body.mesh, Plane(planes[0].point, planes[0].normal), default_snap));
+                }
+                expect_parts(body, planes, 2e-3);
+            },
+            false);
+}
+
 TEST(LoopSplitter, MayBeWithdrawnAndComeBack) {
     for_bodies(
         4, 4,
@@ -407,30 +426,32 @@ TEST(LoopSplitter, StopsOnNodesEdgesAndFaces) {
         false);
 }
 
-/// Two blades go by turns through a body, and each crosses what the other has not finished. Not all
-/// bodies are parted along both.
-TEST(LoopSplitter, StaysSoundUnderTwoBladesAtATime) {
-    for_bodies(
-        6, 4,
-        [](Body& whole, Random& random) {
-            CutBody body(whole.data);
-            const auto planes = random_planes(random, 2);
-            const StraightPath paths[] = {StraightPath(planes[0]), StraightPath(planes[1], 1.0)};
-            const CutId cuts[] = {body.cutter.begin_cut(default_snap),
-                                  body.cutter.begin_cut(default_snap)};
-            constexpr int num_steps = 30;
-            for (int i = 0; i < num_steps; ++i) {
-                body.cutter.follow_motion(body.mesh, body.positions);
-                for (const std::size_t k : {0u, 1u})
-                    body.follow(body.cutter.split(cuts[k], body.mesh,
-                                                  paths[k].edge(-2.0 + 4.0 * i / num_steps),
-                                                  paths[k].edge(-2.0 + 4.0 * (i + 1) / num_steps)));
-            }
-            EXPECT_NEAR(Body::sum(body.rest_volumes()), body.volume_before, 1e-7);
-            EXPECT_GT(body.rest_volumes().size(), 1u);
-            body.expect_replay();
-        },
-        false);
+/// Blades go by turns through a body, and each crosses what the others have not finished.
+TEST(LoopSplitter, PartsABodyAlongThePathsOfSeveralBladesAtATime) {
+    for (const int num_blades : {2, 3})
+        for (const int num_steps : {7, 30})
+            for_bodies(
+                6, 4,
+                [&](Body& whole, Random& random) {
+                    CutBody body(whole.data);
+                    const auto planes = random_planes(random, num_blades);
+                    std::vector<StraightPath> paths;
+                    std::vector<CutId> cuts;
+                    for (const Divider& plane : planes) {
+                        paths.emplace_back(plane, static_cast<double>(paths.size()));
+                        cuts.push_back(body.cutter.begin_cut(default_snap));
+                    }
+                    for (int i = 0; i < num_steps; ++i) {
+                        body.cutter.follow_motion(body.mesh, body.positions);
+                        for (std::size_t k = 0; k < cuts.size(); ++k)
+                            body.follow(body.cutter.split(
+                                cuts[k], body.mesh, paths[k].edge(-2.0 + 4.0 * i / num_steps),
+                                paths[k].edge(-2.0 + 4.0 * (i + 1) / num_steps)));
+                    }
+                    expect_parts(body, planes, 5e-3);
+                    body.expect_replay();
+                },
+                false);
 }
 
 }  // namespace
