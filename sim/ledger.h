@@ -49,7 +49,8 @@ struct EditRecord {
     double mass_removed = 0.0;      ///< kg: density times rest volume of the removed elements
     /// What the edit did to the elements and nodes of the physics (fragments::FragmentMesh). Copies
     /// change neither momenta nor energies. If volume_joined and volume_released are 0, then
-    /// `before` and `after` of an edit that removes nothing are equal to rounding.
+    /// `before` and `after` of an edit that removes nothing are equal to rounding, but for the
+    /// elastic energy of divided cells that are no tetrahedra: docs/theory.md, Fragments.
     std::size_t fragments_copied = 0;       ///< new fragments
     std::size_t fragment_nodes_copied = 0;  ///< new nodes of fragments
     double volume_joined = 0.0;    ///< m3, at rest, that fragments took over from light ones

@@ -144,10 +144,11 @@ class Model {
     ///
     /// A copy of a node gets the state of that node. Fragments of an element inherit its fibres and
     /// its viscous history. So an edit that only divides elements changes no mass, momentum or
-    /// energy. Where a light fragment joins another one, its mass moves with the corners of the
-    /// other one from now on: mass stays; linear and angular momentum are kept by a rigid change of
-    /// the velocities of the nodes near the edit that have no constraint; energies and the centre
-    /// of mass change a little: docs/theory.md, Fragments. Merged nodes keep their momentum.
+    /// energy, but for the elastic energy of divided cells that are no tetrahedra. Where a light
+    /// fragment joins another one, its mass moves with the corners of the other one from now on:
+    /// mass stays; linear and angular momentum are kept by a rigid change of the velocities of the
+    /// nodes near the edit that have no constraint; energies and the centre of mass change a
+    /// little: docs/theory.md, Fragments. Merged nodes keep their momentum.
     ///
     /// The forces stay as they are until compute_forces() is called.
     /// Throws InputError for an edit out of turn, and for one that goes back. Cost: proportional to

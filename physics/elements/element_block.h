@@ -77,6 +77,8 @@ class ElementBlock {
 
     /// Returns the ids of the elements, by slot, in ascending order.
     std::span<const ElementId> elements() const { return elements_; }
+    /// True if the block has the element.
+    bool has(ElementId e) const { return std::ranges::binary_search(elements_, e); }
 
     /// Returns the ids of the nodes of the elements, by local number, in ascending order.
     std::span<const std::uint32_t> nodes() const { return nodes_; }

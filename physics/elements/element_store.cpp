@@ -29,14 +29,20 @@ std::shared_ptr<ElementBlock> make_centre_block(const HyperElasticLinks& links, 
         CentreViscousKernel<kind>(elastic, links.prony), density);
 }
 
+/// Makes a block without elements.
+/// @param is_divided  a box of hybrid springs with less or more material than the box
 std::shared_ptr<ElementBlock> make_block(const Material& material, Precision precision,
-                                         CellKind kind) {
+                                         CellKind kind, bool is_divided) {
     if (const auto* springs = std::get_if<MassSprings>(&material.method))
         return std::make_shared<KernelBlock<MassSpringKernel>>(MassSpringKernel{springs->young},
                                                                material.density);
-    if (const auto* hybrid = std::get_if<HybridSprings>(&material.method))
+    if (const auto* hybrid = std::get_if<HybridSprings>(&material.method)) {
+        if (is_divided)
+            return make_centre_block<CellKind::hexahedron>(links_of_divided_box(*hybrid),
+                                                           material.density);
         return std::make_shared<KernelBlock<HybmssKernel>>(HybmssKernel{*hybrid, precision},
                                                            material.density);
+    }
     const auto& links = std::get<HyperElasticLinks>(material.method);
     if (kind == CellKind::hexahedron)
         return make_centre_block<CellKind::hexahedron>(links, material.density);
@@ -163,11 +169,32 @@ void ElementStore::require_law(const FragmentMesh& fragments, const topology::Me
         refuse(MaterialMisfit::needs_cubes, " " + *reason);
 }
 
-std::size_t ElementStore::block_index(ElementId e, int region, CellKind kind) const {
+std::size_t ElementStore::index_of_form(ElementId e, int region, std::size_t form) const {
     const std::size_t of_material =
         e.index() / ElementBlock::max_elements * table_.materials.size() +
         table_.of_region.at(region);
-    return of_material * topology::num_cell_kinds + static_cast<std::size_t>(kind);
+    return of_material * num_forms + form;
+}
+
+std::size_t ElementStore::block_index(ElementId e, int region, CellKind kind) const {
+    if (has_springs_in_boxes(region)) {
+        const std::size_t of_divided = index_of_form(e, region, form_of_divided_box);
+        if (of_divided < blocks_.size() && blocks_[of_divided] && blocks_[of_divided]->has(e))
+            return of_divided;
+    }
+    return index_of_form(e, region, static_cast<std::size_t>(kind));
+}
+
+bool ElementStore::has_springs_in_boxes(int region) const {
+    return std::holds_alternative<HybridSprings>(
+        table_.materials[table_.of_region.at(region)].method);
+}
+
+std::size_t ElementStore::next_form(const FragmentMesh& fragments, ElementId e) const {
+    const bool is_divided = !fragments.part_shares(e).empty() || fragments.volume_share(e) != 1.0;
+    return is_divided && has_springs_in_boxes(fragments.region(e))
+               ? form_of_divided_box
+               : static_cast<std::size_t>(fragments.kind(e));
 }
 
 ElementInput ElementStore::input_of(const FragmentMesh& fragments, ElementId e) const {
@@ -177,18 +204,26 @@ ElementInput ElementStore::input_of(const FragmentMesh& fragments, ElementId e) 
 }
 
 void ElementStore::insert(const FragmentMesh& fragments, ElementId e) {
-    const CellKind kind = fragments.kind(e);
-    const std::size_t index = block_index(e, fragments.region(e), kind);
+    const std::size_t form = next_form(fragments, e);
+    const std::size_t index = index_of_form(e, fragments.region(e), form);
     if (index >= blocks_.size()) blocks_.resize(index + 1);
     if (!blocks_[index])
-        blocks_[index] = make_block(table_.materials[table_.of_region.at(fragments.region(e))],
-                                    table_.precision, kind);
+        blocks_[index] =
+            make_block(table_.materials[table_.of_region.at(fragments.region(e))], table_.precision,
+                       fragments.kind(e), form == form_of_divided_box);
     editable(index).insert(e, input_of(fragments, e));
     note_change(index);
 }
 
 void ElementStore::replace(const FragmentMesh& fragments, ElementId e) {
-    const std::size_t index = block_index(e, fragments.region(e), fragments.kind(e));
+    const int region = fragments.region(e);
+    const CellKind kind = fragments.kind(e);
+    const std::size_t index = block_index(e, region, kind);
+    if (index != index_of_form(e, region, next_form(fragments, e))) {
+        erase(e, region, kind);
+        insert(fragments, e);
+        return;
+    }
     editable(index).replace(e, input_of(fragments, e));
     note_change(index);
 }

@@ -62,8 +62,12 @@ struct UnsuitableMaterial : InputError {
 ///
 /// A block has the elements of one material and one kind whose ids agree in all but their lowest
 /// bits, that is in a range of ElementBlock::max_elements ids. The division depends only on ids and
-/// materials. An edited body is therefore divided and summed exactly as a new body with the same
-/// mesh.
+/// materials, and on which boxes of hybrid springs are divided. An edited body is therefore divided
+/// and summed exactly as a new body with the same mesh.
+///
+/// A box of HybMSS that a cut has divided, or that carries a light part of another one, is computed
+/// by HEML on the tetrahedra about its centre: see links_of_divided_box(). If the cut is taken
+/// back, it is HybMSS again.
 class ElementStore {
   public:
     /// Builds the blocks of a mesh. Throws UnsuitableMaterial for a region without material and for
@@ -84,7 +88,7 @@ class ElementStore {
     }
 
     void insert(const fragments::FragmentMesh& fragments, ElementId e);
-    /// Precomputes an element again whose corners or whose share have changed.
+    /// Precomputes an element again whose corners or whose shares have changed.
     void replace(const fragments::FragmentMesh& fragments, ElementId e);
     /// Erases an element. Its region and its kind are arguments.
     void erase(ElementId e, int region, topology::CellKind kind);
@@ -207,7 +211,17 @@ class ElementStore {
     /// Returns the block. If it is shared, a copy replaces it first.
     ElementBlock& editable(std::size_t block);
 
+    /// The forms of elements: the kinds of cells, and boxes of HybMSS with less or more material
+    /// than the box has.
+    static constexpr std::size_t form_of_divided_box = topology::num_cell_kinds,
+                                 num_forms = topology::num_cell_kinds + 1;
+    std::size_t index_of_form(ElementId e, int region, std::size_t form) const;
+    /// Returns the block that an element is in.
     std::size_t block_index(ElementId e, int region, topology::CellKind kind) const;
+    bool has_springs_in_boxes(int region) const;
+    /// Returns the form that an element has by its present shares, in which it is not yet if an
+    /// edit has just changed these.
+    std::size_t next_form(const fragments::FragmentMesh& fragments, ElementId e) const;
     void require_law(const fragments::FragmentMesh& fragments, const topology::Mesh& mesh,
                      ElementId e) const;
     ElementInput input_of(const fragments::FragmentMesh& fragments, ElementId e) const;
@@ -216,7 +230,7 @@ class ElementStore {
     std::array<bool, topology::num_cell_kinds> has_kind_{};
     std::optional<topology::ElementField<ElementId, Vec3>> fibres_;
     std::vector<std::shared_ptr<ElementBlock>>
-        blocks_;                               // by range of ids, then by material, then by kind
+        blocks_;                               // by range of ids, then by material, then by form
     std::vector<std::size_t> changed_blocks_;  // since the nodes were numbered
     std::vector<std::vector<Piece>> ranges_;   // by range of nodes; in ascending order of blocks
     std::vector<std::vector<LocalVector>> parts_;      // the forces of each block

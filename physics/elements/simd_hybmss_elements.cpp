@@ -65,7 +65,7 @@ void SimdHybmssElements::assign(std::size_t num_elements, const HybmssKernel& ke
 
 void SimdHybmssElements::set(std::size_t i, const HybmssElement& element,
                              [[maybe_unused]] double share) {
-    assert(share == 1.0);  // hexahedra are not divided
+    assert(share == 1.0);  // ElementStore makes others cells of HEML
     std::visit(
         [&]<class Number>(std::vector<CellGroup<Number>>& groups) {
             CellGroup<Number>& group = groups[i % groups.size()];

@@ -51,6 +51,16 @@ struct HybridSprings {
     double stiffness_ratio = 1.0;
 };
 
+/// Returns the HEML material of a box of hybrid springs that a cut has divided. Springs join the
+/// corners of the whole box, so that they cannot follow how a part fills it. The law is the closest
+/// one without a limit on compression: the moduli at rest are the same, and at 10 % of tension,
+/// compression or shear its energy is within 9 % of that of the springs (docs/theory.md, Parts of
+/// boxes with hybrid springs).
+inline HyperElasticLinks links_of_divided_box(const HybridSprings& springs) {
+    return {StableNeoHookean::of_rest_moduli(springs.volume_modulus + springs.shear_modulus,
+                                             springs.shear_modulus)};
+}
+
 struct Material {
     double density = 0.0;  ///< kg/m3
     std::variant<HyperElasticLinks, MassSprings, HybridSprings> method;

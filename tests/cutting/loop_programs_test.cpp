@@ -7,6 +7,7 @@
 #include <numeric>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cut_balance.h"
@@ -20,6 +21,7 @@
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
+#include "tests/physics/test_bodies.h"
 
 namespace incise::cutting {
 namespace {
@@ -33,10 +35,11 @@ using topology::MeshData;
 /// A body in motion that is cut.
 class Patient {
   public:
-    Patient(const MeshData& data, std::uint64_t seed)
+    /// @param table  the materials, which the cells have in turn
+    Patient(const MeshData& data, physics::MaterialTable table, std::uint64_t seed)
         : random_(seed),
-          table_(all_materials(data.num_cells())),
-          mesh_(Mesh::build(with_all_materials(data)).mesh),
+          table_(std::move(table)),
+          mesh_(Mesh::build(physics::with_regions(data, table_.materials.size())).mesh),
           model_(mesh_, table_),
           rest_volume_(volume()) {
         Box box;
@@ -132,6 +135,7 @@ struct Programs {
     MeshData (*make)();
     int count;
     bool has_surfaces = true;
+    bool has_springs = false;  ///< HybMSS, else HEML
 };
 void PrintTo(const Programs& p, std::ostream* out) { *out << p.count << " on " << p.body; }
 
@@ -149,6 +153,7 @@ MeshData of_family() {
 
 const Programs all_programs[] = {
     {"cube of hexahedra", cube<Bricks::hexahedra, 0>, 40},
+    {"cube of hybrid springs", cube<Bricks::hexahedra, 0>, 30, true, true},
     {"cube of wedges", cube<Bricks::wedges, 0>, 30},
     {"cube of pyramids", cube<Bricks::pyramids, 0>, 20, false},
     {"mixed cube", cube<Bricks::mixed, 0>, 30, false},
@@ -164,7 +169,10 @@ TEST_P(LoopPrograms, KeepMeshesValidAndBodiesInBalance) {
     const MeshData data = GetParam().make();
     std::size_t num_divided = 0;
     for (int seed = 0; seed < test::num_cases(GetParam().count); ++seed) {
-        Patient patient(data, static_cast<std::uint64_t>(seed));
+        Patient patient(data,
+                        GetParam().has_springs ? physics::table_of_hybrid_springs()
+                                               : all_materials(data.num_cells()),
+                        static_cast<std::uint64_t>(seed));
         SCOPED_TRACE("seed " + std::to_string(seed));
         patient.run(GetParam().has_surfaces);
         num_divided += patient.num_divided();

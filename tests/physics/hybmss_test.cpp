@@ -8,6 +8,7 @@
 
 #include "incise/base/error.h"
 #include "incise/physics/elements/spectrum.h"
+#include "incise/physics/elements/virtual_centre_kernel.h"
 #include "incise/topology/box_mesh.h"
 #include "tests/physics/hybmss_cells.h"
 
@@ -230,6 +231,29 @@ topology::MeshData one_cell(const Cell& X) {
     data.add_cell(topology::CellKind::hexahedron,
                   std::array<std::int64_t, 8>{0, 1, 2, 3, 4, 5, 6, 7});
     return data;
+}
+
+// A cell of HEML takes the place of a box that a cut divides: docs/theory.md, Fragments.
+TEST(HybMss, HasTheEnergyOfItsHemlMaterialToFirstOrderOfStrain) {
+    constexpr auto hexahedron = topology::CellKind::hexahedron;
+    test::Random random(8);
+    for_each_cell([&](const HybmssKernel& kernel, const Cell& X, const HybmssKernel::Element& e) {
+        const HyperElasticLinks links = links_of_divided_box(kernel.material);
+        const VirtualCentreKernel<hexahedron> heml{links.law, links.inversion_threshold};
+        const auto of_heml = heml.precompute(X);
+        EXPECT_NEAR(of_heml.volume, e.volume, 1e-12 * e.volume);
+        for (const double fraction : heml.mass_fractions(of_heml))
+            EXPECT_NEAR(fraction, 1.0 / 8.0, 1e-14);
+        EXPECT_LE(sum_of_norms(heml.forces(of_heml, X)), 1e-12 * force_scale(kernel, e));
+        for (const double strain : {1e-4, 1e-3, 1e-2}) {
+            const Vec3 stretches = Vec3::Ones() + random.vector(strain);
+            const Cell x = deformed(X, random_deformation(random, stretches));
+            const double springs = kernel.energy(e, x);
+            // All round, where the volume terms differ most, it is 2.3 times the strain.
+            EXPECT_NEAR(heml.energy(of_heml, x), springs,
+                        4.0 * strain * heml.stiffness_energy(of_heml) * strain * strain);
+        }
+    });
 }
 
 TEST(HybMss, RefusesCellsThatAreNoBoxesByName) {

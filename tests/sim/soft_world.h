@@ -61,6 +61,21 @@ inline std::vector<std::pair<const char*, std::function<WorldDef()>>> resumable_
              }}};
 }
 
+struct ResumableCut {
+    const char* name;
+    std::function<WorldDef()> body;
+    CutMode mode;
+};
+
+/// The bodies that are split, and one that is separated.
+inline std::vector<ResumableCut> resumable_cuts() {
+    std::vector<ResumableCut> cuts;
+    for (const auto& [name, body] : resumable_bodies())
+        cuts.push_back({name, body, CutMode::split});
+    cuts.push_back({"separated hexahedra", cuts.back().body, CutMode::separate});
+    return cuts;
+}
+
 inline std::vector<VertexId> nodes_where(const World& world,
                                          const std::function<bool(const Vec3&)>& is_in) {
     std::vector<VertexId> nodes;

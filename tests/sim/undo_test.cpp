@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -51,10 +50,9 @@ void expect_sound(World& world) {
 // grasps and loads that came or went since. From the last one to the first, each is gone back to
 // twice: the second time from a body that was cut anew.
 TEST(Undo, GoesBackToTheBitsOfBefore) {
-    for (const auto& [name, body] : resumable_bodies()) {
+    for (const auto& [name, body, mode] : resumable_cuts()) {
         SCOPED_TRACE(name);
-        const bool is_hex = std::string_view(name) == "hexahedra";
-        Session session(held(World(body())), scalpel(is_hex ? CutMode::separate : CutMode::split));
+        Session session(held(World(body())), scalpel(mode));
         session.world().surface();
         std::vector<Moment> moments;
         for (int i = 0; i < Session::num_steps; ++i) {

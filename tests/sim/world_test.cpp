@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <string_view>
 #include <thread>
 
 #include "incise/sim/selection.h"
@@ -120,13 +119,9 @@ TEST(World, ReportsEditsThatMakeTheSameMeshElsewhere) {
 }
 
 TEST(World, ResumesFromSavedBytesToTheBit) {
-    for (const auto& [name, body] : resumable_bodies()) {
+    for (const auto& [name, body, mode] : resumable_cuts()) {
         SCOPED_TRACE(name);
-        const bool is_hex = std::string_view(name) == "hexahedra";
-        const auto session = [&] {
-            return Session(held(World(body())),
-                           scalpel(is_hex ? CutMode::separate : CutMode::split));
-        };
+        const auto session = [&] { return Session(held(World(body())), scalpel(mode)); };
         Session whole = session();
         std::vector<std::string> moments;
         for (int i = 0; i < Session::num_steps; ++i) {
