@@ -45,11 +45,15 @@ struct FragmentChanges {
     FragmentMeshChanges mesh;
     std::vector<ShareChange> shares;  ///< in ascending order of fragments
     std::vector<CarriedCell> cells;   ///< in ascending order of cells
-    /// True if a light fragment joined another one or parted from it. Then other nodes carry a part
-    /// of the mass.
+    /// True if parts of a cell reach into each other: a cut bends within the cell. Then they share
+    /// what all of them have of each tetrahedron of the carrier.
+    bool has_overlaps = false;
+    /// True if a light fragment joined another one or parted from it, or if parts overlap. Then
+    /// other nodes carry a part of the mass.
     bool has_joins() const {
-        return std::ranges::any_of(
-            cells, [](const CarriedCell& cell) { return cell.is_released || cell.is_joined; });
+        return has_overlaps || std::ranges::any_of(cells, [](const CarriedCell& cell) {
+                   return cell.is_released || cell.is_joined;
+               });
     }
     bool operator==(const FragmentChanges&) const = default;
 };

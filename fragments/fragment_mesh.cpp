@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 #include "incise/fragments/cell_weights.h"
 #include "incise/fragments/fragment_update.h"
@@ -249,10 +250,11 @@ void FragmentMesh::move_cell(CellId cell, ElementId from, ElementId to) {
     if (to.is_valid()) drop_if_trivial(cells_of_fragment_, to);
 }
 
-std::vector<ElementId> FragmentMesh::update_part_shares(const Mesh& material, CarrierId carrier) {
-    std::vector<ElementId> changed;
+FragmentMesh::PartSharesUpdate FragmentMesh::update_part_shares(const Mesh& material,
+                                                                CarrierId carrier) {
+    PartSharesUpdate update;
     const CellKind kind = kinds_[carrier.index()];
-    if (kind == CellKind::tetrahedron) return changed;
+    if (kind == CellKind::tetrahedron) return update;
     std::array<Vec3, max_corners> x;
     const auto origins = origins_of(carrier);
     for (std::size_t k = 0; k < origins.size(); ++k) x[k] = rest_position(origins[k]);
@@ -288,26 +290,41 @@ std::vector<ElementId> FragmentMesh::update_part_shares(const Mesh& material, Ca
         volumes.push_back(sum);
         if (!fractions.back().empty()) divided.push_back(fractions.back());
     }
-    if (divided.size() > 1 && std::abs(filled - whole) <= rounding * whole) {
+    const bool fit = divided.size() > 1 && std::abs(filled - whole) <= rounding * whole;
+    if (fit) {
         fit_together(divided);
         auto next = divided.begin();
         for (auto& of_part : fractions)
             if (!of_part.empty()) of_part = std::move(*next++);
     }
+    const PartNumbers part_sizes = part_volumes(kind, at_rest);
     for (std::size_t p = 0; p + 1 < owners.size(); ++p) {
         const ElementId e = owners[p];
+        double others = 0.0;
+        for (const CellId cell : cells_of(e))
+            if (carrier_of_cell(cell) != carrier || !is_own(cell))
+                others += topology::rest_volume(material, cell);
+        if (!fractions[p].empty()) {
+            // Parts that reach into each other have not what their volumes say: together, they
+            // have the whole of each tetrahedron.
+            const double own = std::inner_product(fractions[p].begin(), fractions[p].end(),
+                                                  part_sizes.begin(), 0.0);
+            const bool differs = fit && std::abs(own - volumes[p]) > rounding * whole;
+            update.has_overlaps |= differs;
+            shares_[e.index()] = ((differs ? own : volumes[p]) + others) / whole;
+        }
         // What it carries of others is in all tetrahedra alike: if an edit then divides the
         // fragment, that stays where it is.
-        if (const double others = volume(e) - volumes[p]; others > rounding * whole)
+        if (others > rounding * whole)
             for (double& fraction : fractions[p]) fraction += others / whole;
         if (std::ranges::equal(part_shares(e), fractions[p])) continue;
-        changed.push_back(e);
+        update.changed.push_back(e);
         if (fractions[p].empty())
             part_shares_.erase(e);
         else
             part_shares_[e] = std::move(fractions[p]);
     }
-    return changed;
+    return update;
 }
 
 void FragmentMesh::set_fragments(CarrierId carrier, std::vector<ElementId> fragments) {

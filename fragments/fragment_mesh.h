@@ -195,8 +195,12 @@ class FragmentMesh {
             carried_around_.erase(cell);
     }
     /// Computes the shares of the tetrahedra of the living fragments of a carrier. They depend only
-    /// on its cells, and on the volume shares. Returns the fragments of which they have changed.
-    std::vector<ElementId> update_part_shares(const topology::Mesh& material, CarrierId carrier);
+    /// on its cells. Those of a divided carrier are its volume shares, too.
+    struct PartSharesUpdate {
+        std::vector<ElementId> changed;  ///< fragments of which they have changed
+        bool has_overlaps = false;       ///< true if parts reach into each other
+    };
+    PartSharesUpdate update_part_shares(const topology::Mesh& material, CarrierId carrier);
     /// Sets the living fragments of a carrier, in ascending order.
     void set_fragments(CarrierId carrier, std::vector<ElementId> fragments);
     // Lists of which an absent entry means the one id with the number of the key.

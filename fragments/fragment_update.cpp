@@ -210,8 +210,14 @@ void FragmentUpdate::update_shares() {
     }
     make_sorted_set(carriers);
     for (const CarrierId carrier : carriers)
-        for (const ElementId e : fragments_.update_part_shares(material_, carrier))
-            part_shares_changed_.push_back(e);
+        for (const ElementId e : fragments_.fragments_of(carrier))
+            if (e.is_valid()) shares_before_.try_emplace(e, fragments_.volume_share(e));
+    for (const CarrierId carrier : carriers) {
+        const auto update = fragments_.update_part_shares(material_, carrier);
+        part_shares_changed_.insert(part_shares_changed_.end(), update.changed.begin(),
+                                    update.changed.end());
+        has_overlaps_ |= update.has_overlaps;
+    }
     make_sorted_set(part_shares_changed_);
     for (const ElementId e : died_) fragments_.part_shares_.erase(e);
 }
@@ -432,6 +438,7 @@ void FragmentUpdate::remove_unused_nodes(std::vector<NodeId> touched) {
 
 FragmentChanges FragmentUpdate::differences() {
     FragmentChanges result;
+    result.has_overlaps = has_overlaps_;
     auto& edit = result.mesh;
     edit.epoch_before = changes_.epoch_before;
     edit.epoch_after = changes_.epoch_after;

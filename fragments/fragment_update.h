@@ -92,6 +92,7 @@ class FragmentUpdate {
     std::vector<CellBefore> fragment_before_;
     std::unordered_map<ElementId, std::vector<NodeId>> corners_before_;  // of fragments that change
     std::unordered_map<ElementId, double> shares_before_;
+    bool has_overlaps_ = false;
     std::vector<ElementId> parents_;              // of the added fragments, in ascending order
     std::vector<std::uint8_t> is_from_own_part_;  // of each, if it is a part of its parent
     std::vector<ElementId> died_;
