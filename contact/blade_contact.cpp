@@ -8,6 +8,7 @@
 
 #include "incise/base/error.h"
 #include "incise/contact/surface_contact.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::contact {
 
@@ -18,17 +19,27 @@ constexpr double longest_piece = 0.125;
 constexpr double least_motion = 1e-12;  // a blade that moves by less stands still
 /// A piece that is nearer to the surface opens nothing: it is in a cut that is there already.
 constexpr double surface_layer = 0.03;
+/// A smaller face has no area, but for rounding. It is a part of the square of its width.
+constexpr double least_area = 1e-10;
 
 /// True if a point is at most so far from a face of its cell that belongs to the surface.
 bool is_at_surface(const topology::Mesh& mesh, std::span<const Vec3> positions,
                    const topology::CellPoint& at, const Vec3& x, double distance) {
     for (int f = 0; f < mesh.num_faces(at.cell); ++f) {
         if (mesh.neighbor({at.cell, f}).is_valid()) continue;
+        const int size = mesh.face_size({at.cell, f});
         const auto corner = [&](int k) -> const Vec3& {
             return positions[mesh.face_corner({at.cell, f}, k).index()];
         };
-        const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-        if (std::abs(normal.dot(x - corner(0))) <= distance * normal.norm()) return true;
+        Vec3 middle = Vec3::Zero();
+        double width = 0.0;
+        for (int k = 0; k < size; ++k) {
+            middle += corner(k) / size;
+            width = std::max(width, (corner(k) - corner(0)).norm());
+        }
+        const Vec3 area = topology::area_vector(size, corner);
+        if (!(area.norm() > least_area * width * width)) continue;  // it has no plane
+        if (std::abs(area.dot(x - middle)) <= distance * area.norm()) return true;
     }
     return false;
 }

@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "incise/topology/geometry.h"
+
 namespace incise::contact {
 
 // Source: Ericson 2005, Real-Time Collision Detection, closest point on a triangle by regions.
@@ -92,7 +94,7 @@ double closest_on_segment(const Vec3& p, const Vec3& q, const Corners& x) {
 
 std::optional<RigidTouch> touch_of_ball(const Vec3& centre, double radius, const Corners& x,
                                         double farthest) {
-    const Vec3 area = (x[1] - x[0]).cross(x[2] - x[0]);
+    const Vec3 area = topology::doubled_area(x[0], x[1], x[2]);
     if (!(area.squaredNorm() > 0.0)) return std::nullopt;
     const Vec3 outward = area.normalized();
     RigidTouch touch;

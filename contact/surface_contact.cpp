@@ -11,6 +11,7 @@
 #include "incise/base/archive.h"
 #include "incise/base/error.h"
 #include "incise/contact/way_inside.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::contact {
 
@@ -398,7 +399,7 @@ SurfaceContact::Touch SurfaceContact::touch(VertexId n, std::size_t t,
                                             std::span<const Vec3> positions) const {
     const auto& [na, nb, nc] = triangles_[t];
     const Vec3 &a = positions[na.index()], &b = positions[nb.index()], &c = positions[nc.index()];
-    const Vec3 area = (b - a).cross(c - a);
+    const Vec3 area = topology::doubled_area(a, b, c);
     const double square = area.squaredNorm();
     if (!(square > 0.0)) return {};
     const Vec3 x = positions[n.index()] - a;

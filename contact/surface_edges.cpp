@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "incise/topology/geometry.h"
+
 namespace incise::contact {
 
 namespace {
@@ -17,8 +19,8 @@ constexpr double cosine_of_straight = 0.8;
 }  // namespace
 
 Vec3 area_of(const Triangle& triangle, std::span<const Vec3> x) {
-    const Vec3& a = x[triangle[0].index()];
-    return (x[triangle[1].index()] - a).cross(x[triangle[2].index()] - a);
+    return topology::doubled_area(x[triangle[0].index()], x[triangle[1].index()],
+                                  x[triangle[2].index()]);
 }
 
 void SurfaceEdges::set_triangles(std::span<const Triangle> triangles,

@@ -29,7 +29,8 @@ struct SurfaceEdge {
     std::array<bool, 2> ends() const { return {next[0] == no_edge, next[1] == no_edge}; }
 };
 
-/// Returns the normal of a triangle, outward, of the length of twice its area, m2.
+/// Returns the normal of a triangle, outward, of the length of twice its area, m2; zero if
+/// it has none but for rounding.
 /// @param x  positions by vertex id, m
 Vec3 area_of(const Triangle& triangle, std::span<const Vec3> x);
 

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "incise/topology/geometry.h"
+
 namespace incise::contact {
 
 namespace {
@@ -93,7 +95,7 @@ void SurfaceTree::fit(std::span<const Vec3> positions) {
         const auto& [a, b, c] = triangles_[t];
         const Vec3 &x = positions[a.index()], &y = positions[b.index()], &z = positions[c.index()];
         boxes_[t] = Box(x.cwiseMin(y).cwiseMin(z), x.cwiseMax(y).cwiseMax(z));
-        normals_[t] = (y - x).cross(z - x).stableNormalized();
+        normals_[t] = topology::doubled_area(x, y, z).stableNormalized();
     }
     cones_.assign(branches_.size(), {});
     for (std::size_t k = 2 * num_leaves_ - 1; k >= 1; --k) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "incise/topology/geometry.h"
+
 namespace incise::contact {
 
 namespace {
@@ -17,7 +19,7 @@ void set_node_normals(std::span<const Triangle> triangles, std::span<const Vec3>
     for (const Triangle& triangle : triangles) {
         const Vec3 &x = positions[triangle[0].index()], &y = positions[triangle[1].index()],
                    &z = positions[triangle[2].index()];
-        const Vec3 area = (y - x).cross(z - x);
+        const Vec3 area = topology::doubled_area(x, y, z);
         const double double_area = area.norm();
         if (!(double_area > 0.0)) continue;
         const Vec3 normal = area / double_area;

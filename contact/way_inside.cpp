@@ -6,6 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "incise/topology/face_triangles.h"
+#include "incise/topology/geometry.h"
+
 namespace incise::contact {
 
 namespace {
@@ -19,6 +22,19 @@ constexpr double on_surface = 1e-10;
 /// Among elements that are turned inside out a way may go round in circles.
 constexpr std::size_t most_elements = 100;
 
+/// Calls visit(point, outward) for the planes of the triangles of a face. A face of a polyhedron
+/// can have triangles without area, between corners on a straight line: they have no plane.
+template <class Visit>
+void for_each_plane(const topology::Mesh& mesh, std::span<const Vec3> positions, FaceId face,
+                    Visit visit) {
+    topology::for_each_triangle(mesh, face, [&](VertexId a, VertexId b, VertexId c) {
+        const Vec3& point = positions[a.index()];
+        const Vec3 outward =
+            topology::doubled_area(point, positions[b.index()], positions[c.index()]);
+        if (!outward.isZero(0.0)) visit(point, outward);
+    });
+}
+
 /// Returns through which face of an element a way leaves it: the first plane of a face that it
 /// crosses outwards, as if the element were convex. Nothing if the way ends before.
 /// @param entered  the face by which it came, and does not leave
@@ -29,16 +45,14 @@ std::optional<FaceId> exit_of(const topology::Mesh& mesh, std::span<const Vec3> 
     for (int f = 0; f < mesh.num_faces(entered.cell); ++f) {
         const FaceId face{entered.cell, f};
         if (face == entered) continue;
-        const auto at = [&](int k) { return positions[mesh.face_corner(face, k).index()]; };
-        for (int k = 2; k < mesh.face_size(face); ++k) {
-            const Vec3 outward = (at(k - 1) - at(0)).cross(at(k) - at(0));
+        for_each_plane(mesh, positions, face, [&](const Vec3& point, const Vec3& outward) {
             const double rise = along.dot(outward);
-            if (!(rise > 0.0)) continue;
-            const double part = (at(0) - from).dot(outward) / rise;
-            if (part >= least) continue;
+            if (!(rise > 0.0)) return;
+            const double part = (point - from).dot(outward) / rise;
+            if (part >= least) return;
             least = part;
             exit = face;
-        }
+        });
     }
     return exit;
 }
@@ -53,12 +67,10 @@ bool is_on_surface(const topology::Mesh& mesh, std::span<const Vec3> positions, 
     for (std::size_t i = 0; i < elements.size() && i < most_elements; ++i)
         for (int f = 0; f < mesh.num_faces(elements[i]); ++f) {
             const FaceId face{elements[i], f};
-            const auto at = [&](int k) { return positions[mesh.face_corner(face, k).index()]; };
             bool is_on_face = false;
-            for (int k = 2; k < mesh.face_size(face) && !is_on_face; ++k) {
-                const Vec3 outward = (at(k - 1) - at(0)).cross(at(k) - at(0));
-                is_on_face = (point - at(0)).dot(outward) >= -distance * outward.norm();
-            }
+            for_each_plane(mesh, positions, face, [&](const Vec3& on_it, const Vec3& outward) {
+                is_on_face |= (point - on_it).dot(outward) >= -distance * outward.norm();
+            });
             if (!is_on_face) continue;
             const FaceId neighbor = mesh.neighbor(face);
             if (!neighbor.is_valid()) return true;

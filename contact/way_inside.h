@@ -11,8 +11,8 @@
 namespace incise::contact {
 
 /// True if the straight way from a triangle of the surface to a point behind it stays within the
-/// body, and the point is not on its surface. Faces with four corners count as two triangles. Cost:
-/// O(1) in the elements along the way.
+/// body, and the point is not on its surface. Faces with more corners count as the triangles into
+/// which topology::for_each_triangle() divides them. Cost: O(1) in the elements along the way.
 /// @param positions  present ones, by vertex id, m
 /// @param face       of the triangle, on the boundary
 /// @param triangle   its nodes

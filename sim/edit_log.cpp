@@ -7,17 +7,37 @@ namespace incise::sim {
 
 namespace {
 
+/// Returns how much memory a list takes. bytes(value) tells what a value of it has on its own.
+template <class T, class Bytes>
+std::size_t num_bytes_of(const std::vector<T>& values, Bytes bytes) {
+    std::size_t sum = sizeof(T) * values.size();
+    for (const T& value : values) sum += bytes(value);
+    return sum;
+}
+template <class T>
+std::size_t num_bytes_of(const std::vector<T>& values) {
+    return sizeof(T) * values.size();
+}
+
+template <class Node, class Element>
+std::size_t num_bytes_of(const topology::MeshChanges<Node, Element>& changes) {
+    const auto of_corners = [](const auto& record) { return num_bytes_of(record.corners); };
+    return num_bytes_of(changes.nodes_added) + num_bytes_of(changes.nodes_removed) +
+           num_bytes_of(changes.elements_added, of_corners) +
+           num_bytes_of(changes.elements_removed, of_corners) + num_bytes_of(changes.rewired);
+}
+
 std::size_t num_bytes_of(const physics::BodyEdit& edit) {
-    constexpr std::size_t of_record = 200, of_id = 16;  // with what they own, about
-    const auto of = [](const auto& changes) {
-        return of_record * (changes.nodes_added.size() + changes.nodes_removed.size() +
-                            changes.elements_added.size() + changes.elements_removed.size()) +
-               of_id * changes.rewired.size();
+    const auto of_shapes = [](const topology::ShapeChange& change) {
+        return change.from.num_bytes() + change.to.num_bytes();
     };
-    return sizeof(EditLog) + of(edit.material) + of(edit.physics.mesh) +
-           of_id * (2 * edit.material.faces_opened.size() + 4 * edit.physics.cells.size() +
-                    2 * edit.physics.shares.size() + edit.touched_nodes.size()) +
-           sizeof(physics::BodyEdit::Velocity) * edit.velocities.size();
+    const topology::ChangeSet& material = edit.material;
+    return sizeof(EditLog) + num_bytes_of(material) +
+           num_bytes_of(material.shape_changes, of_shapes) + num_bytes_of(material.inside_changes) +
+           num_bytes_of(material.faces_opened) + num_bytes_of(material.faces_closed) +
+           num_bytes_of(edit.physics.mesh) + num_bytes_of(edit.physics.shares) +
+           num_bytes_of(edit.physics.cells) + num_bytes_of(edit.velocities) +
+           num_bytes_of(edit.touched_vertices) + num_bytes_of(edit.touched_nodes);
 }
 
 }  // namespace

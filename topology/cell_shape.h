@@ -52,6 +52,11 @@ class CellShape {
     /// Appends the corners of the cell, each once, in the order in which the faces name them.
     void append_corners(std::vector<VertexId>& corners) const;
 
+    /// Returns how much memory its lists take, bytes.
+    std::size_t num_bytes() const {
+        return ends_.size() * (sizeof(ends_[0]) + sizeof(is_inside_[0])) +
+               corners_.size() * sizeof(VertexId);
+    }
     bool operator==(const CellShape&) const = default;
     static void archive(auto& ar, auto& self) { ar(self.ends_, self.corners_, self.is_inside_); }
     /// True if the lists fit together, and each face has three corners or more.

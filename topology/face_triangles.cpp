@@ -2,8 +2,13 @@
 #include "incise/topology/face_triangles.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace incise::topology {
+
+namespace {
+constexpr double rounding = 1e-10;  // of an area
+}
 
 Ears::Ears(const Mesh& mesh, FaceId f) {
     for (int p = 0; p < mesh.face_size(f); ++p) {
@@ -27,6 +32,10 @@ double Ears::quality_of(std::size_t p) const {
         std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
     if (!(longest > 0.0)) return 0.0;
     const double area = doubled_area(a, b, c);
+    // A triangle that leaves nothing but corners on a straight line would make the last one flat.
+    double rest = -area;
+    for (std::size_t q = 2; q < size(); ++q) rest += doubled_area(x_[0], x_[q - 1], x_[q]);
+    if (size() > 3 && area > 0.0 && std::abs(rest) <= rounding * area) return 0.0;
     if (area > 0.0)
         for (std::size_t q = 0; q < size(); ++q) {
             if (q == before || q == p || q == after) continue;

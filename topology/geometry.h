@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "incise/base/types.h"
@@ -69,6 +70,27 @@ inline double volume_of(const CellShape& shape, std::span<const Vec3> positions)
         });
     }
     return volume;
+}
+
+/// Returns the area vector of a face, which points outwards: the sum of the fan of its triangles.
+/// It is the same for all corners from which the fan begins, also if three of them are in a line.
+/// @param size  the number of corners
+/// @param at    (position): the corner, anticlockwise as seen from outside
+template <class CornerAt>
+Vec3 area_vector(int size, CornerAt at) {
+    const Vec3 first = at(0);
+    Vec3 sum = Vec3::Zero();
+    for (int p = 2; p < size; ++p) sum += (at(p - 1) - first).cross(at(p) - first);
+    return 0.5 * sum;
+}
+
+/// Returns twice the area vector of a triangle. It is exactly zero if the triangle has no area but
+/// for rounding, as one between corners on a straight side of a face: then it has no direction.
+inline Vec3 doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+    constexpr double rounding = 1e-10;  // of the square of its width
+    const Vec3 u = b - a, v = c - a, area = u.cross(v);
+    const double least = rounding * std::max(u.squaredNorm(), v.squaredNorm());
+    return area.squaredNorm() > least * least ? area : Vec3::Zero();
 }
 
 /// Returns the mean of the corners.

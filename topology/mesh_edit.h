@@ -59,7 +59,8 @@ class MeshEdit {
     const Bisection& bisect(CellId e, VertexId a, VertexId b, double t);
 
     // The operations of Euler on cells of any kind. A cell that one of them changes becomes a
-    // polyhedron. They need no inverses: those of the record are exact.
+    // polyhedron. They need no inverses: those of the record are exact. All throw InputError if the
+    // cell is dead, or if bisect() has made it in this edit.
     // Source: Damiand, Lienhardt 2014, Combinatorial Maps, chapter 6.
 
     /// Divides an edge, in all cells at it, by a new node at (1 - t) a + t b at rest, 0 < t < 1,
@@ -126,6 +127,8 @@ class MeshEdit {
     };
 
     void require_alive(CellId e) const;
+    void require_no_new_row(CellId e) const;
+    void require_dividable(FaceId f) const;
     void save(CellId e);
     void touch_face(FaceId f);
     void part(FaceId f);

@@ -9,6 +9,18 @@
 
 namespace incise::topology {
 
+/// Refuses a cell that bisect() has made in this edit: its row has corners, which the record of a
+/// new polyhedron does not tell.
+void MeshEdit::require_no_new_row(CellId e) const {
+    if (!mesh_.is_polyhedron(e)) require_older(e, "given other faces");
+}
+
+void MeshEdit::require_dividable(FaceId f) const {
+    require_alive(f.cell);
+    require_no_new_row(f.cell);
+    if (const FaceId other = mesh_.neighbor(f); other.is_valid()) require_no_new_row(other.cell);
+}
+
 /// Makes the cell a polyhedron, and returns its shape.
 CellShape& MeshEdit::shape_of(CellId e) {
     save(e);
@@ -31,6 +43,7 @@ VertexId MeshEdit::divide_edge(const Dart& d, double t) {
         throw InputError("edit: the place " + std::to_string(t) + " is not between 0 and 1");
     std::vector<CellId> cells;
     append_cells_at_edge(mesh_, d.face.cell, a, b, cells);
+    for (const CellId e : cells) require_no_new_row(e);
     const VertexId middle = add_node_between(a, b, t);
     mesh_.incident_elements_[middle.index()] = cells.front();
     for (const CellId e : cells) {
@@ -70,12 +83,12 @@ FaceId MeshEdit::divide_face_by(FaceId f, VertexId a, VertexId b, VertexId middl
 }
 
 FaceId MeshEdit::divide_face(FaceId f, VertexId a, VertexId b) {
-    require_alive(f.cell);
+    require_dividable(f);
     return divide_face_by(f, a, b, {});
 }
 
 VertexId MeshEdit::divide_face_beside(FaceId f, VertexId a, VertexId b) {
-    require_alive(f.cell);
+    require_dividable(f);
     const Vec3 along = mesh_.rest_position(b) - mesh_.rest_position(a);
     VertexId farthest;
     double most = -1.0;
@@ -102,7 +115,7 @@ VertexId MeshEdit::divide_face_beside(FaceId f, VertexId a, VertexId b) {
 }
 
 VertexId MeshEdit::divide_face_at_centre(FaceId f) {
-    require_alive(f.cell);
+    require_dividable(f);
     const int size = mesh_.face_size(f);
     assert(size <= max_corners);
     VertexRecord record{VertexId(mesh_.node_capacity()), Vec3::Zero(), {}, size};
@@ -138,6 +151,7 @@ VertexId MeshEdit::divide_face_at_centre(FaceId f) {
 
 CellId MeshEdit::divide_cell(CellId e, std::span<const VertexId> path) {
     require_alive(e);
+    require_no_new_row(e);
     CellShape shape = shape_of(e);
     const std::vector<FaceId> neighbors = mesh_.polyhedron(e).neighbors;
     const int count = shape.num_faces();

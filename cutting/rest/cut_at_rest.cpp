@@ -2,10 +2,10 @@
 #include "incise/cutting/rest/cut_at_rest.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -22,78 +22,60 @@
 namespace incise::cutting {
 
 using fragments::FragmentMesh;
-using topology::CellKind;
 using topology::Mesh;
 
 namespace {
 
-/// The state of a mesh before a split, from which the faces that the split opens are found.
+/// The boundary of a mesh before a split, from which the faces that the split opens are found.
 class FacesBefore {
   public:
     explicit FacesBefore(const Mesh& mesh)
-        : rows_(mesh.element_capacity()), num_nodes_(mesh.node_capacity()) {
-        for (const CellId e : mesh.elements()) {
-            if (mesh.kind(e) != CellKind::tetrahedron) continue;
-            Row& row = rows_[e.index()];
-            for (std::size_t k = 0; k < 4; ++k) row.corners[k] = mesh.corners(e)[k];
-            for (int f = 0; f < 4; ++f)
-                row.joined |= (mesh.neighbor({e, f}).is_valid() ? 1u : 0u) << f;
+        : num_cells_(mesh.element_capacity()), num_nodes_(mesh.node_capacity()) {
+        for (const FaceId f : topology::boundary_faces(mesh)) {
+            std::vector<VertexId>& corners = open_[f.cell].emplace_back();
+            for (int p = 0; p < mesh.face_size(f); ++p) corners.push_back(mesh.face_corner(f, p));
         }
     }
 
-    /// Returns both sides of each face that the split has opened. These are the boundary faces
-    /// inside an old element, or in a face of an old element that was shared with another element.
+    /// Returns both sides of the faces that the split has opened: the faces on a cut that are in no
+    /// face of the former boundary. So one that parts nothing from such a face is not among them.
     std::vector<FaceId> opened_by(const topology::ChangeSet& changes, const Mesh& mesh) const {
         std::vector<FaceId> opened;
-        for (const FaceId f : topology::boundary_faces(mesh)) {
-            if (mesh.is_polyhedron(f.cell)) {  // the corners of its faces on the cut are new
-                bool is_new = mesh.is_on_cut(f);
-                for (int p = 0; p < mesh.face_size(f); ++p)
-                    is_new = is_new && mesh.face_corner(f, p).index() >= num_nodes_;
-                if (is_new) opened.push_back(f);
+        for (const CellId e : topology::touched_cells(changes)) {
+            if (!mesh.is_alive(e)) continue;
+            CellId root = e;
+            while (root.index() >= num_cells_)
+                root = changes.elements_added[root.index() - num_cells_].parent;
+            const auto open = open_.find(root);
+            for (int f = 0; f < mesh.num_faces(e); ++f) {
+                if (!mesh.is_on_cut({e, f})) continue;
+                const bool was_open =
+                    open != open_.end() && std::ranges::any_of(open->second, [&](const auto& face) {
+                        for (int p = 0; p < mesh.face_size({e, f}); ++p)
+                            if (!is_in(mesh.face_corner({e, f}, p), face, changes)) return false;
+                        return true;
+                    });
+                if (!was_open) opened.push_back({e, f});
             }
-            if (mesh.kind(f.cell) != CellKind::tetrahedron) continue;
-            CellId root = f.cell;
-            while (root.index() >= rows_.size())
-                root = changes.elements_added[root.index() - rows_.size()].parent;
-            const Row& row = rows_[root.index()];
-            unsigned on = 0;  // the old corners that span the face
-            for (int p = 0; p < 3; ++p) on |= support(mesh.face_corner(f, p), row, changes);
-            bool was_open = false;
-            for (int side = 0; side < 4; ++side)
-                was_open |= (on & ~corners_of(side)) == 0 && (row.joined >> side & 1u) == 0;
-            if (!was_open) opened.push_back(f);
         }
         return opened;
     }
 
   private:
-    struct Row {
-        std::array<VertexId, 4> corners;
-        unsigned joined = 0;  // a bit for each face that was shared
-    };
-
-    static unsigned corners_of(int face) {
-        unsigned bits = 0;
-        for (const int k : topology::traits(CellKind::tetrahedron).face(face)) bits |= 1u << k;
-        return bits;
-    }
-
-    /// Returns the old corners between which the node was added, as one bit each.
-    unsigned support(VertexId n, const Row& row, const topology::ChangeSet& changes) const {
-        unsigned bits = 0;
-        if (n.index() < num_nodes_) {
-            for (std::size_t k = 0; k < 4; ++k) bits |= (row.corners[k] == n ? 1u : 0u) << k;
-            return bits;
-        }
+    /// True if a node is a corner of a face, or lies between such.
+    bool is_in(VertexId n, const std::vector<VertexId>& face,
+               const topology::ChangeSet& changes) const {
+        if (std::ranges::find(face, n) != face.end()) return true;
+        if (n.index() < num_nodes_) return false;
         const topology::VertexRecord& record = changes.nodes_added[n.index() - num_nodes_];
-        for (int s = 0; s < record.num_sources; ++s)
-            bits |= support(record.sources[static_cast<std::size_t>(s)].node, row, changes);
-        return bits;
+        const auto sources =
+            std::span(record.sources).first(static_cast<std::size_t>(record.num_sources));
+        return std::ranges::all_of(
+            sources, [&](const auto& source) { return is_in(source.node, face, changes); });
     }
 
-    std::vector<Row> rows_;  // by element id
-    std::size_t num_nodes_;
+    std::map<CellId, std::vector<std::vector<VertexId>>> open_;
+    std::size_t num_cells_, num_nodes_;
 };
 
 /// Returns the surface that the edge sweeps: two triangles for each segment and motion, as in
@@ -178,11 +160,18 @@ class CountingCutter {
     CutCounts apply(const RestTool& tool) {
         counts_ = {};
         opened_faces_ = {};
+        // Twice, so that the nodes that the last tool opened rest beside its cut, too.
+        keep_margins();
+        keep_margins();
         std::visit([&](const auto& kind) { cut(kind); }, tool.kind);
         return counts_;
     }
 
   private:
+    /// Has the cutter move the nodes that were opened off their cut, as it does in each step of a
+    /// run: else rounding would decide on which side of the same cut they are.
+    void keep_margins() { cutter_.follow_motion(mesh_, mesh_.rest_positions()); }
+
     void cut(const PlaneCut& plane) {
         const Vec3 normal = well_scaled(plane.normal), unit = normal.normalized();
         const Plane surface(plane.point, normal);
@@ -212,6 +201,7 @@ class CountingCutter {
     void cut(const Sweep& sweep) {
         const CutId cut = cutter_.begin_cut(sweep.snap);
         for (std::size_t p = 0; p + 1 < sweep.poses.size(); ++p) {
+            if (p > 0) keep_margins();
             const auto &before = sweep.poses[p], &after = sweep.poses[p + 1];
             const auto rest = mesh_.rest_positions();
             if (mode_ == CutMode::split)
@@ -260,7 +250,7 @@ class CountingCutter {
         counts_.cut_area += result.report.cut_area;
         if (result.report.faces_opened > 0) {
             const auto opened = faces.opened_by(result.changes, mesh_);
-            assert(opened.size() == 2 * result.report.faces_opened);
+            assert(opened.size() <= 2 * result.report.faces_opened);
             for (const FaceId f : opened) remember(f);
         }
         record_changes(result.changes);
@@ -318,7 +308,7 @@ class CountingCutter {
             sum += at(p);
         }
         opened_faces_.middles.push_back(sum / size);
-        opened_faces_.areas.push_back(0.5 * (at(1) - at(0)).cross(at(2) - at(0)));
+        opened_faces_.areas.push_back(topology::area_vector(size, at));
     }
 
     void measure_angle(const Vec3& normal) {
@@ -354,7 +344,7 @@ class CountingCutter {
     CutCounts counts_;
     struct {
         std::vector<Vec3> nodes, middles;  // m, at rest; middles of edges and of faces
-        std::vector<Vec3> areas;           // m2, of the first three corners
+        std::vector<Vec3> areas;           // m2
     } opened_faces_;
 };
 

@@ -102,9 +102,8 @@ struct RestCutReport {
 /// elements whose centres are on different sides. Two points are on different sides of a surface if
 /// the straight line between them crosses it an odd number of times.
 ///
-/// Throws InputError with the name of the tool if an element to be divided is no tetrahedron, or if
-/// no element of the body is left. The mesh then has the changes by the tools before it, and the
-/// removal of the last element.
+/// Throws InputError with the name of the tool if no element of the body is left. The mesh then has
+/// the changes by the tools before it, and the removal of the last element.
 /// Cost: some microseconds for each element and tool.
 RestCutReport cut_at_rest(topology::Mesh& mesh, std::span<const RestTool> tools, CutMode mode);
 

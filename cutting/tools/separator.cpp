@@ -2,7 +2,6 @@
 #include "incise/cutting/tools/separator.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 
 #include "incise/cutting/surfaces/space_time.h"
@@ -13,15 +12,12 @@ using topology::Mesh;
 
 namespace {
 
-/// Returns the weights of the corners of a face for the point where paths pass through it. At rest
-/// this point is on the straight line between the centres of the two elements. The path then is
-/// nearly straight, and a blade seldom passes through it twice. If the line misses the face, or if
-/// the face is a quadrilateral, the point is the centre of the face.
-std::array<double, topology::max_face_corners> intersection(const Mesh& mesh, FaceId f) {
-    const int size = mesh.face_size(f);
-    std::array<double, topology::max_face_corners> centre{};
-    centre.fill(1.0 / size);
-    if (size != 3) return centre;
+/// Returns the weights of the corners of a triangle for the point where paths pass through it. At
+/// rest this point is on the straight line between the centres of the two elements. The path then
+/// is nearly straight, and a blade seldom passes through it twice. If the line misses the face, the
+/// point is the centre of the face.
+Vec3 intersection(const Mesh& mesh, FaceId f) {
+    const Vec3 centre = Vec3::Constant(1.0 / 3.0);
     const auto at = [&](int p) -> const Vec3& {
         return mesh.rest_position(mesh.face_corner(f, p));
     };
@@ -35,16 +31,23 @@ std::array<double, topology::max_face_corners> intersection(const Mesh& mesh, Fa
     const Vec3 volumes(volume(1, 2), volume(2, 0), volume(0, 1));
     const bool is_inside = (volumes.array() > 0.0).all() || (volumes.array() < 0.0).all();
     if (!is_inside) return centre;
-    const Vec3 weights = volumes / volumes.sum();
-    return {weights[0], weights[1], weights[2], 0.0};
+    return volumes / volumes.sum();
 }
 
-Vec3 on_face(const Mesh& mesh, FaceId f, std::span<const double> weights,
-             std::span<const Vec3> positions) {
-    Vec3 sum = Vec3::Zero();
-    for (int p = 0; p < mesh.face_size(f); ++p)
-        sum += weights[static_cast<std::size_t>(p)] * positions[mesh.face_corner(f, p).index()];
-    return sum;
+/// Returns where paths pass through a face. If it has more than three corners, this is the mean of
+/// all: it may have any number of them.
+MovingPoint on_face(const TissueMotion& tissue, FaceId f) {
+    const Mesh& mesh = tissue.mesh;
+    const int size = mesh.face_size(f);
+    const Vec3 weights = size == 3 ? intersection(mesh, f) : Vec3::Constant(1.0 / size);
+    MovingPoint point{Vec3::Zero(), Vec3::Zero()};
+    for (int p = 0; p < size; ++p) {
+        const std::size_t n = mesh.face_corner(f, p).index();
+        const double weight = weights[size == 3 ? p : 0];
+        point[0] += weight * tissue.before[n];
+        point[1] += weight * tissue.after[n];
+    }
+    return point;
 }
 
 /// True if the blade's edge passes through the segment between two points an odd number of times.
@@ -116,9 +119,7 @@ std::vector<FaceId> faces_to_open(const TissueMotion& tissue, std::span<const Ve
             if (other < face && swept.intersects(tissue.box(other.cell))) continue;
             const FaceId lower = std::min(face, other), higher = std::max(face, other);
             // From the lower side, so that sums always have the same order.
-            const auto weights = intersection(mesh, lower);
-            const MovingPoint middle = {on_face(mesh, lower, weights, tissue.before),
-                                        on_face(mesh, lower, weights, tissue.after)};
+            const MovingPoint middle = on_face(tissue, lower);
             const bool is_odd = is_crossed(centre(lower.cell), middle, before, after) !=
                                 is_crossed(middle, centre(higher.cell), before, after);
             if (is_odd) faces.push_back(lower);

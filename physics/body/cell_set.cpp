@@ -2,7 +2,10 @@
 #include "incise/physics/body/cell_set.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <span>
+#include <utility>
 
 #include "incise/base/error.h"
 
@@ -121,11 +124,11 @@ FaceSet::FaceSet(std::vector<FaceId> faces) {
 void FaceSet::apply(const Mesh& mesh, const ChangeSet& changes) {
     if (changes.epoch_after < changes.epoch_before) {
         // The edit is an undo: the parts are removed, and their faces return to the members.
+        go_back(mesh, topology::inverse(changes));
         const CellId end(changes.element_capacity_after);
         while (!members_.empty() && members_.back().face.cell >= end) members_.pop_back();
         for (Member& member : members_)
             if (member.left_to >= end) member.left_to = {};
-        go_back(changes);
         return;
     }
     std::vector<FaceId> born;
@@ -151,14 +154,6 @@ void FaceSet::apply(const Mesh& mesh, const ChangeSet& changes) {
 
 namespace {
 
-/// Returns the faces that a cell had before an edit, or has after it.
-topology::CellShape shape_of(const Mesh& mesh, const topology::ShapeChange& change,
-                             bool is_before) {
-    const topology::CellKind kind = is_before ? change.kind_from : change.kind_to;
-    if (kind == topology::CellKind::polyhedron) return is_before ? change.from : change.to;
-    return mesh.shape_of_row(change.cell, kind);
-}
-
 /// True if all corners of a face are corners of another one, or lie between such.
 bool lies_in(std::span<const VertexId> part, std::span<const VertexId> whole,
              const ChangeSet& changes) {
@@ -174,56 +169,109 @@ bool lies_in(std::span<const VertexId> part, std::span<const VertexId> whole,
     return std::ranges::all_of(part, [&](VertexId n) { return is_in(is_in, n); });
 }
 
+/// The faces of a cell of which an edit changed the shape, and those into which it divided them: in
+/// the cell, and in the parts that it lost. A part of a face has all of its corners in it, and was
+/// inside the body if the face was.
+class DividedFaces {
+  public:
+    /// @param parts  that the cell has lost, in ascending order
+    DividedFaces(const Mesh& mesh, const ChangeSet& changes, const topology::ShapeChange& change,
+                 std::span<const CellId> parts)
+        : changes_(changes),
+          before_(change.kind_from == topology::CellKind::polyhedron
+                      ? change.from
+                      : mesh.shape_of_row(change.cell, change.kind_from)) {
+        add(change.cell, change.to);
+        for (const CellId part : parts) {
+            const auto it = std::ranges::lower_bound(changes.shape_changes, part, {},
+                                                     &topology::ShapeChange::cell);
+            if (it != changes.shape_changes.end() && it->cell == part) add(part, it->to);
+        }
+    }
+
+    int num_faces() const { return before_.num_faces(); }
+    /// Returns the parts of a face, in ascending order.
+    std::vector<FaceId> parts_of(int face) const {
+        std::vector<FaceId> parts;
+        for (const auto& [cell, shape] : after_)
+            for (int f = 0; f < shape->num_faces(); ++f)
+                if (before_.is_inside(face) == shape->is_inside(f) &&
+                    lies_in(shape->face(f), before_.face(face), changes_))
+                    parts.push_back({cell, f});
+        return parts;
+    }
+
+  private:
+    void add(CellId cell, const topology::CellShape& shape) { after_.emplace_back(cell, &shape); }
+
+    const ChangeSet& changes_;
+    topology::CellShape before_;
+    std::vector<std::pair<CellId, const topology::CellShape*>> after_;
+};
+
+std::span<const CellId> parts_of(const std::map<CellId, std::vector<CellId>>& parts, CellId e) {
+    const auto it = parts.find(e);
+    return it == parts.end() ? std::span<const CellId>() : it->second;
+}
+
 }  // namespace
 
-// A part of a face has all of its corners in it, and was inside the body if the face was. The
-// members of a cell that changed its faces are found anew, in it and in the parts that it lost.
+/// Removes the members of a cell, but for those that were left to others: they are no faces.
+/// Returns the numbers of their faces.
+std::vector<int> FaceSet::take_faces(CellId e) {
+    const auto of_cell =
+        std::ranges::equal_range(members_, e, {}, [](const Member& m) { return m.face.cell; });
+    const auto taken = std::ranges::stable_partition(
+        of_cell, [](const Member& member) { return member.left_to.is_valid(); });
+    std::vector<int> faces;
+    for (const Member& member : taken) faces.push_back(member.face.face);
+    members_.erase(taken.begin(), taken.end());
+    return faces;
+}
+
+// The members of a cell that changed its faces are found anew, in it and in the parts that it lost.
 void FaceSet::follow_shapes(const Mesh& mesh, const ChangeSet& changes, std::vector<FaceId>& born) {
     if (changes.shape_changes.empty()) return;
     const auto parts = parts_by_ancestor(changes);
-    Replaced replaced{changes.epoch_after, {}};
+    for (const topology::ShapeChange& change : changes.shape_changes) {
+        if (change.cell.index() >= changes.element_capacity_before) break;
+        const std::vector<int> faces = take_faces(change.cell);
+        if (faces.empty()) continue;
+        const DividedFaces divided(mesh, changes, change, parts_of(parts, change.cell));
+        std::vector<FaceId> of_cell;
+        for (const int face : faces)
+            std::ranges::copy(divided.parts_of(face), std::back_inserter(of_cell));
+        sort_and_make_unique(of_cell);
+        born.insert(born.end(), of_cell.begin(), of_cell.end());
+    }
+}
+// A face was a member if all of its parts are. One part does not tell: without area it would lie in
+// several faces.
+void FaceSet::go_back(const Mesh& mesh, const ChangeSet& changes) {
+    if (changes.shape_changes.empty() || members_.empty()) return;
+    const auto is_member = [&](FaceId f) {
+        const auto [begin, end] = std::ranges::equal_range(members_, f, {}, &Member::face);
+        return std::any_of(begin, end, [](const Member& m) { return !m.left_to.is_valid(); });
+    };
+    const auto has_members = [&](CellId e) {
+        return std::ranges::binary_search(members_, e, {},
+                                          [](const Member& m) { return m.face.cell; });
+    };
+    const auto parts = parts_by_ancestor(changes);
+    std::vector<FaceId> restored;
     for (const topology::ShapeChange& change : changes.shape_changes) {
         const CellId e = change.cell;
-        if (e.index() >= changes.element_capacity_before) continue;
-        const auto by_cell = [](const Member& m) { return m.face.cell; };
-        const auto begin = std::ranges::lower_bound(members_, e, {}, by_cell);
-        const auto end = std::ranges::upper_bound(members_, e, {}, by_cell);
-        if (begin == end) continue;
-        const topology::CellShape before = shape_of(mesh, change, true);
-        std::vector<int> faces;
-        for (auto member = begin; member != end; ++member) faces.push_back(member->face.face);
-        replaced.members.insert(replaced.members.end(), begin, end);
-        members_.erase(begin, end);
-        const auto add = [&](CellId cell) {
-            for (int f = 0; f < mesh.num_faces(cell); ++f) {
-                std::vector<VertexId> corners;
-                for (int p = 0; p < mesh.face_size({cell, f}); ++p)
-                    corners.push_back(mesh.face_corner({cell, f}, p));
-                for (const int face : faces)
-                    if (before.is_inside(face) == mesh.was_inside({cell, f}) &&
-                        lies_in(corners, before.face(face), changes)) {
-                        born.push_back({cell, f});
-                        break;
-                    }
-            }
-        };
-        add(e);
-        if (const auto it = parts.find(e); it != parts.end())
-            for (const CellId part : it->second) add(part);
+        if (e.index() >= changes.element_capacity_before) break;
+        const auto lost = parts_of(parts, e);
+        if (!has_members(e) && std::ranges::none_of(lost, has_members)) continue;
+        const DividedFaces divided(mesh, changes, change, lost);
+        for (int face = 0; face < divided.num_faces(); ++face)
+            if (const auto all = divided.parts_of(face);
+                !all.empty() && std::ranges::all_of(all, is_member))
+                restored.push_back({e, face});
+        take_faces(e);
     }
-    if (!replaced.members.empty()) replaced_.push_back(std::move(replaced));
-}
-
-/// Takes back what follow_shapes() did for an edit.
-void FaceSet::go_back(const ChangeSet& changes) {
-    if (replaced_.empty() || replaced_.back().epoch != changes.epoch_before) return;
-    const std::vector<Member> before = std::move(replaced_.back().members);
-    replaced_.pop_back();
-    std::erase_if(members_, [&](const Member& member) {
-        return std::ranges::any_of(
-            before, [&](const Member& old) { return old.face.cell == member.face.cell; });
-    });
-    members_.insert(members_.end(), before.begin(), before.end());
+    for (const FaceId f : restored) members_.push_back({f, {}});
     std::ranges::sort(members_, {}, &Member::face);
 }
 

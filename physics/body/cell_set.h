@@ -52,21 +52,16 @@ class FaceSet {
 
     /// Throws InputError if a member cannot be a face of the mesh.
     void require_fit(const topology::Mesh& mesh) const;
-    static void archive(auto& ar, auto& self) { ar(self.members_, self.replaced_); }
+    static void archive(auto& ar, auto& self) { ar(self.members_); }
 
   private:
-    /// The members of cells that an edit gave other faces, as they were before it.
-    struct Replaced {
-        std::uint64_t epoch = 0;  // of the mesh after the edit
-        std::vector<Member> members;
-        static void archive(auto& ar, auto& self) { ar(self.epoch, self.members); }
-    };
+    std::vector<int> take_faces(CellId e);
     void follow_shapes(const topology::Mesh& mesh, const topology::ChangeSet& changes,
                        std::vector<FaceId>& born);
-    void go_back(const topology::ChangeSet& changes);
+    /// Takes back what follow_shapes() did for `changes`. `mesh` is the mesh before them.
+    void go_back(const topology::Mesh& mesh, const topology::ChangeSet& changes);
 
     std::vector<Member> members_;
-    std::vector<Replaced> replaced_;
 };
 
 }  // namespace incise::physics

@@ -40,9 +40,9 @@ class Structure {
     /// materials change: see Model::version().
     std::uint64_t version() const { return version_; }
 
-    /// Returns the mass of the material at each node of the mesh, kg. A cell that is whole gives
-    /// each corner what its element does, and a part of a cell an equal part, such as a quarter of
-    /// the mass of a tetrahedron. Cost: O(n).
+    /// Returns the mass of the material at each node of the mesh, kg. A cell that is whole and has
+    /// the corners of its element gives each corner what the element does. A part of a cell, and a
+    /// whole polyhedron beside a cut, gives each of its corners an equal part. Cost: O(n).
     std::vector<double> mesh_masses() const;
     /// Returns the density of the material of a region, kg/m3.
     double density(int region) const { return elements_.density(region); }

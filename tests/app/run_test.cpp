@@ -242,7 +242,30 @@ move = [{ time = 0.033, by = [0, 0, 0] }, { time = 0.034, by = [0, 0, 500] }]
     EXPECT_EQ(summary().at("frames"), 4);
 }
 
-// A brick is led to where a blade passes that divides, which no look at the body at rest tells.
+// So does one that a tool stops: both end with an error about the input.
+TEST_F(Run, ThatARefusedOrderStopsLeavesASummary) {
+    write("scene.toml", scene);
+    write("hands.jsonl", R"({"incise_recording":1,"scenario":"scene","hash":"1","set":[],)"
+                         R"("body":"1","version":"0","tick_length":0.01}
+{"tick":0}
+{"tick":1}
+{"tick":2,"orders":[{"move":"knife","at":[0,0,0],"rotation":[0,0,0,1]}]}
+{"tick":3}
+)");
+    const auto outcome = run(
+        {"scene.toml", "--quiet", "--replay", "hands.jsonl", "--set", "dynamics.end_time=0.05"});
+    EXPECT_EQ(outcome.status, 2);
+    const testing::Matcher<const std::string&> has_its_form = testing::MatchesRegex(
+        "incise: scene: step [0-9]+, t = 0\\.02 s: tick 2 of the recording: there is no tool "
+        "'knife' .*scene\\.pvd\n");
+    EXPECT_TRUE(has_its_form.Matches(outcome.err)) << outcome.err;
+    EXPECT_EQ(expect_readable(folder_ / "scene.out"), 3u);  // 0 to 0.02
+    EXPECT_EQ(summary().at("status"), "failed");
+    EXPECT_NE(summary().at("message").get<std::string>().find("there is no tool 'knife'"),
+              std::string::npos);
+    EXPECT_EQ(summary().at("time"), 0.02);
+}
+
 TEST_F(Run, FailsWhereItCannotWrite) {
     write("scene.toml", scene);
     write("file", "not a folder");

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "incise/cutting/exact/loop_splitter.h"
+#include "incise/cutting/surfaces/swept_edge.h"
 #include "incise/topology/boundary_surface.h"
 #include "incise/topology/box_mesh.h"
 #include "support/mesh_families.h"
@@ -166,6 +168,41 @@ TEST(WayInside, GoesThroughHexahedra) {
         EXPECT_TRUE(inside(Vec3(0.51, 0.52, 0.53)));
         EXPECT_FALSE(inside(from + 2.2 * (Vec3(0.51, 0.52, 0.53) - from)));
     }
+}
+
+// Where a cut ends, faces have corners on straight sides. A way from a face of the surface to the
+// middle of its cell stays in it, whatever the faces look like.
+TEST(WayInside, LeadsToTheMiddleOfCellsBesideACut) {
+    using test::Bricks;
+    for (const auto bricks : {Bricks::hexahedra, Bricks::wedges, Bricks::pyramids, Bricks::mixed})
+        for (std::uint64_t seed = 0; seed < test::num_cases(10); ++seed) {
+            test::Random random(seed);
+            Mesh mesh = Mesh::build(test::brick_cube(bricks, 3, 0.0, 1)).mesh;
+            const Vec3 point = Vec3::Constant(0.5) + random.vector(0.2),
+                       normal = random.vector(1.0).normalized(), u = normal.unitOrthogonal(),
+                       v = normal.cross(u);
+            const auto rest = mesh.rest_positions();
+            cutting::LoopFront front;
+            cutting::split_cells(
+                mesh, {mesh, rest, rest},
+                cutting::SweptEdge({point - 3.0 * u - 3.0 * v, point + 3.0 * u - 3.0 * v},
+                                   {point - 3.0 * u, point + 3.0 * u}),
+                front, {}, {});
+            const Eigen::Matrix3d turn =
+                Eigen::AngleAxisd(random.uniform(0.0, 3.0), random.vector(1.0).normalized())
+                    .toRotationMatrix();
+            std::vector<Vec3> positions;
+            for (const Vec3& x : mesh.rest_positions()) positions.push_back(turn * x);
+            const topology::BoundarySurface surface(mesh);
+            for (std::size_t t = 0; t < surface.triangles().size(); ++t) {
+                const FaceId face = surface.faces()[t];
+                EXPECT_TRUE(is_way_inside(
+                    mesh, positions, face, surface.triangles()[t], Vec3(0.5, 0.3, 0.2),
+                    cutting::TissueMotion::centre(mesh, face.cell, positions)))
+                    << "bricks " << static_cast<int>(bricks) << ", seed " << seed << ", face "
+                    << face.face << " of " << face.cell.value;
+            }
+        }
 }
 
 }  // namespace

@@ -4,11 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <span>
+
 #include "incise/base/error.h"
 #include "incise/cutting/surfaces/plane.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
 #include "incise/topology/validate.h"
 #include "support/mesh_families.h"
+#include "support/num_cases.h"
+#include "support/surfaces.h"
 
 namespace incise::cutting {
 namespace {
@@ -180,6 +184,90 @@ TEST(CutAtRest, OfASweepEndsWhereTheBladeDoes) {
         ASSERT_TRUE(report.total.surface_distance);
         EXPECT_LT(report.total.surface_distance->faces, 1e-7);
     }
+}
+
+struct Cube {
+    std::string name;
+    topology::MeshData data;
+};
+
+/// Unit cubes of all kinds of cells.
+std::vector<Cube> cubes(int n) {
+    using test::Bricks;
+    std::vector<Cube> all;
+    for (const double jitter : {0.0, 0.2}) {
+        const std::string text = ", jitter " + std::to_string(jitter);
+        all.push_back({"tetrahedra" + text, test::jittered_cube(n, jitter, 3)});
+        for (const auto& [name, bricks] :
+             {std::pair("hexahedra", Bricks::hexahedra), std::pair("wedges", Bricks::wedges),
+              std::pair("pyramids", Bricks::pyramids), std::pair("mixed", Bricks::mixed)})
+            all.push_back({name + text, test::brick_cube(bricks, n, jitter, 3)});
+    }
+    return all;
+}
+
+// Right through a body of any cells; within it, and along a surface that bends, in tetrahedra.
+TEST(CutAtRest, OfTheSameToolAgainChangesNothing) {
+    for (const auto& [name, data] : cubes(4))
+        for (int seed = 0; seed < test::num_cases(4); ++seed) {
+            test::Random random(700 + static_cast<std::uint64_t>(seed));
+            const Vec3 point = Vec3::Constant(0.5) + random.vector(0.1);
+            const Vec3 normal = random.vector(1.0);
+            const Vec3 along = normal.unitOrthogonal(), ahead = normal.normalized().cross(along);
+            const auto edge = [&](double at) {
+                return std::vector<Vec3>{point + at * ahead - 2.0 * along,
+                                         point + at * ahead + 2.0 * along};
+            };
+            const RestTool plane{"plane", PlaneCut{point, normal}};
+            const RestTool sweep{"sweep", Sweep{{edge(-2), edge(-0.3), edge(0.2), edge(2)}}};
+            std::vector<std::vector<RestTool>> programs = {
+                {plane, plane, plane}, {sweep, sweep, sweep}, {plane, sweep, plane}};
+            if (name.starts_with("tetrahedra")) {
+                const RestTool sphere{"sphere", SurfaceCut{test::icosphere(point, 0.31, 2)}};
+                const RestTool part{"part", Sweep{{edge(-2), edge(-0.3), edge(0.02)}}};
+                const RestTool back{"back", Sweep{{edge(-2), edge(0.02), edge(-2)}}};
+                programs.insert(programs.end(),
+                                {{sphere, sphere, sphere}, {part, part, part}, {back, back}});
+            }
+            for (const auto& tools : programs) {
+                SCOPED_TRACE(name + ", seed " + std::to_string(seed) + ", " + tools[0].name + ", " +
+                             tools[1].name);
+                Mesh mesh = Mesh::build(data).mesh;
+                const auto report = cut_at_rest(mesh, tools, CutMode::split);
+                const auto& first = report.tools.front();
+                EXPECT_GT(first.counts.faces_opened, 0u);
+                for (const ToolReport& again : std::span(report.tools).subspan(1)) {
+                    EXPECT_EQ(again.counts.faces_opened, 0u);
+                    EXPECT_EQ(again.counts.cut_area, 0.0);
+                    EXPECT_EQ(again.pieces, first.pieces);
+                }
+                EXPECT_EQ(report.warnings.size(), tools.size() - 1);
+            }
+        }
+}
+
+// They also have nodes of earlier poses, and sides that keep their nodes.
+TEST(CutAtRest, OfSeveralPosesKnowsAllFacesThatItOpens) {
+    for (const auto& [name, data] : cubes(4))
+        for (int seed = 0; seed < test::num_cases(4); ++seed) {
+            SCOPED_TRACE(name + ", seed " + std::to_string(seed));
+            test::Random random(800 + static_cast<std::uint64_t>(seed));
+            const Vec3 point = Vec3::Constant(0.5) + random.vector(0.1);
+            const Vec3 normal = random.vector(1.0).normalized();
+            const Vec3 along = normal.unitOrthogonal(), ahead = normal.cross(along);
+            Sweep sweep{{}, 0.0};
+            for (const double at : {-2.0, -0.4, -0.1, 0.15, 0.3, 2.0})
+                sweep.poses.push_back(
+                    {point + at * ahead - 2.0 * along, point + at * ahead + 2.0 * along});
+            const std::vector<RestTool> tools = {{"sweep", sweep}};
+            Mesh mesh = Mesh::build(data).mesh;
+            const auto report = cut_at_rest(mesh, tools, CutMode::split);
+            ASSERT_TRUE(report.total.surface_distance);
+            // A pose moves nodes that an earlier one opened by default_snap of an edge, off the
+            // cut.
+            EXPECT_LT(report.total.surface_distance->nodes, default_snap / 4);
+            EXPECT_EQ(report.pieces.size(), 2u);
+        }
 }
 
 TEST(CutAtRest, NamesTheToolThatFails) {

@@ -14,6 +14,7 @@
 #include <numbers>
 #include <set>
 
+#include "incise/cutting/rest/cut_at_rest.h"
 #include "incise/topology/box_mesh.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
@@ -60,6 +61,40 @@ TEST(Separator, ASweepRightThroughPartsAlongThePlane) {
             EXPECT_EQ(body.opened, once);  // the way back opens nothing
         }
     }
+}
+
+// Its faces have any number of corners.
+TEST(Separator, ASweepPartsWhatWasSplitBefore) {
+    using test::Bricks;
+    int most_corners = 0;
+    for (const auto bricks : {Bricks::hexahedra, Bricks::wedges, Bricks::pyramids, Bricks::mixed})
+        for (std::uint64_t seed = 0; seed < test::num_cases(8); ++seed) {
+            SCOPED_TRACE(testing::Message()
+                         << "bricks " << static_cast<int>(bricks) << ", seed " << seed);
+            Random random(seed);
+            Body body(test::brick_cube(bricks, 3, 0.1, seed));
+            std::vector<RestTool> planes(2);
+            for (RestTool& plane : planes)
+                plane.kind = PlaneCut{Vec3::Constant(0.5) + random.vector(0.2), random.vector(1.0)};
+            cut_at_rest(body.mesh, planes, CutMode::split);
+            body.positions.assign(body.mesh.rest_positions().begin(),
+                                  body.mesh.rest_positions().end());
+            const BladePlane plane(Vec3::Constant(0.5) + random.vector(0.2), random.vector(1));
+            const auto side = [&](CellId e) { return plane.height(body.centre(e)) > 0.0; };
+            const auto faces = body.inner_faces();
+            for (const auto& pair : faces)
+                most_corners = std::max(most_corners, body.mesh.face_size(pair.a));
+            std::vector<bool> is_between;
+            for (const auto& pair : faces)
+                is_between.push_back(side(pair.a.cell) != side(pair.b.cell));
+            body.step(plane.edge(4.0, -4.0), plane.edge(4.0, 4.0));
+            for (std::size_t i = 0; i < faces.size(); ++i) {
+                const bool is_open = body.opened.contains(faces[i]);
+                EXPECT_TRUE(is_open == is_between[i] ||
+                            (!is_open && has_leaf(body.mesh, faces[i])));
+            }
+        }
+    EXPECT_GT(most_corners, 4);
 }
 
 TEST(Separator, PlanesThroughNodesAndCentresPartAsWell) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "support/mesh_families.h"
 #include "tests/sim/soft_world.h"
 
 namespace incise::sim {
@@ -81,6 +82,19 @@ TEST(CuttingForce, ThatIsReportedIsTheToughnessTimesTheWidth) {
     EXPECT_NEAR(cut.work, cut.last.contact.fracture_energy, 1e-12);
     EXPECT_EQ(cut.external_work, 0.0);  // it is not exerted
     EXPECT_EQ(cut.sideways, 0.0);
+}
+
+// The parts of other cells have faces with corners on straight sides.
+TEST(CuttingForce, IsTheToughnessTimesTheWidthInCellsOfAllKinds) {
+    using test::Bricks;
+    for (const auto bricks : {Bricks::hexahedra, Bricks::wedges, Bricks::pyramids, Bricks::mixed}) {
+        SCOPED_TRACE(static_cast<int>(bricks));
+        WorldDef def = gel();
+        def.mesh = test::brick_cube(bricks, 6, 0.0, 1);
+        for (Vec3& x : def.mesh.points) x *= size;
+        const Cut cut = draw_wire(held(World(std::move(def))), wire(5.0, CuttingForce::report));
+        EXPECT_NEAR(cut.mean_force, 5.0 * size, 0.02 * 5.0 * size);
+    }
 }
 
 TEST(CuttingForce, ThatIsReportedChangesNothingElse) {

@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "incise/base/archive.h"
 #include "incise/fragments/validate.h"
+#include "incise/sim/edit_log.h"
 #include "incise/sim/undo_point.h"
 #include "incise/sim/world.h"
 #include "incise/topology/boundary_surface.h"
@@ -147,6 +149,27 @@ TEST(Undo, BringsAWorldBackThatHasFailed) {
     world.undo(before);
     EXPECT_FALSE(world.has_failed());
     EXPECT_TRUE(world.save() == bytes);
+}
+
+// As much as the lists of the edit, of which the shapes of polyhedra are the largest.
+TEST(Undo, CountsTheMemoryOfEdits) {
+    for (const auto kind : {topology::CellKind::tetrahedron, topology::CellKind::hexahedron}) {
+        WorldDef def = soft_body();
+        def.mesh = topology::box_mesh(kind, Vec3::Zero(), Vec3::Constant(size), {6, 6, 6});
+        World world(std::move(def));
+        const auto& edits = world
+                                .step(0.5 * world.stable_step(),
+                                      cut_along(world, {0.05, 0.05, 0.05}, {1, 0.2, 0.1}))
+                                .edits;
+        ASSERT_EQ(edits.size(), 1u);
+        ArchiveWriter ar;
+        ar(edits[0].body.material, edits[0].body.physics.mesh);
+        const auto serialized = ar.bytes().size();
+        EditLog log;
+        const std::size_t counted = log.append(edits[0].body)->num_bytes();
+        EXPECT_GT(counted, serialized);
+        EXPECT_LT(counted, 2 * serialized);
+    }
 }
 
 // What nobody can go back to is not kept.
