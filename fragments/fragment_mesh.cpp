@@ -288,16 +288,29 @@ FragmentMesh::PartSharesUpdate FragmentMesh::update_part_shares(const Mesh& mate
         if (fractions.back().empty() && sum > 0.0 && sum < (1.0 - rounding) * whole)
             fractions.back().assign(num_parts(kind), sum / whole);
         volumes.push_back(sum);
-        if (!fractions.back().empty()) divided.push_back(fractions.back());
     }
-    const bool fit = divided.size() > 1 && std::abs(filled - whole) <= rounding * whole;
+    const PartNumbers part_sizes = part_volumes(kind, at_rest);
+    const auto volume_of = [&](std::span<const double> of_part) {
+        return std::inner_product(of_part.begin(), of_part.end(), part_sizes.begin(), 0.0);
+    };
+    // What is carried elsewhere has its volume there, and the others share the rest.
+    std::vector<double> rest(num_parts(kind), 1.0);
+    const std::vector<double>& elsewhere = fractions.back();
+    const double volume_elsewhere = elsewhere.empty() ? 0.0 : volume_of(elsewhere);
+    for (std::size_t t = 0; t < rest.size(); ++t)
+        rest[t] = std::max(
+            0.0, 1.0 - volumes.back() * (volume_elsewhere > 0.0 ? elsewhere[t] / volume_elsewhere
+                                                                : 1.0 / whole));
+    fractions.pop_back();
+    for (const auto& of_part : fractions)
+        if (!of_part.empty()) divided.push_back(of_part);
+    const bool fit = !divided.empty() && std::abs(filled - whole) <= rounding * whole;
     if (fit) {
-        fit_together(divided);
+        fit_together(divided, rest);
         auto next = divided.begin();
         for (auto& of_part : fractions)
             if (!of_part.empty()) of_part = std::move(*next++);
     }
-    const PartNumbers part_sizes = part_volumes(kind, at_rest);
     for (std::size_t p = 0; p + 1 < owners.size(); ++p) {
         const ElementId e = owners[p];
         double others = 0.0;
@@ -307,8 +320,7 @@ FragmentMesh::PartSharesUpdate FragmentMesh::update_part_shares(const Mesh& mate
         if (!fractions[p].empty()) {
             // Parts that reach into each other have not what their volumes say: together, they
             // have the whole of each tetrahedron.
-            const double own = std::inner_product(fractions[p].begin(), fractions[p].end(),
-                                                  part_sizes.begin(), 0.0);
+            const double own = volume_of(fractions[p]);
             const bool differs = fit && std::abs(own - volumes[p]) > rounding * whole;
             update.has_overlaps |= differs;
             shares_[e.index()] = ((differs ? own : volumes[p]) + others) / whole;

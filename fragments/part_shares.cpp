@@ -74,12 +74,13 @@ std::vector<double> filled_fractions(CellKind kind, std::span<const Vec3> corner
     return {fractions.begin(), fractions.begin() + static_cast<std::ptrdiff_t>(num_parts(kind))};
 }
 
-void fit_together(std::vector<std::vector<double>>& fractions) {
-    for (std::size_t t = 0; t < fractions.front().size(); ++t) {
+void fit_together(std::vector<std::vector<double>>& fractions, std::span<const double> sums) {
+    for (std::size_t t = 0; t < sums.size(); ++t) {
         double sum = 0.0;
         for (const auto& of_part : fractions) sum += of_part[t];
         for (auto& of_part : fractions)
-            of_part[t] = sum > 0.0 ? of_part[t] / sum : 1.0 / static_cast<double>(fractions.size());
+            of_part[t] = sums[t] * (sum > 0.0 ? of_part[t] / sum
+                                              : 1.0 / static_cast<double>(fractions.size()));
     }
 }
 

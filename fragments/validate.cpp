@@ -103,8 +103,7 @@ class FragmentCheck {
             volume += shares[t] * volumes[t];
             are_positive = are_positive && shares[t] >= 0.0;
         }
-        // Of the carrier. Parts that reach into each other differ by up to 1e-5: fit_together().
-        constexpr double tolerance = 1e-4;
+        constexpr double tolerance = 1e-9;  // of the carrier: rounding, and FragmentParts::share_of
         const double expected = fragments_.volume(e);
         if (!are_positive ||
             !(std::abs(volume - expected) <= tolerance * fragments_.carrier_volume(e)))

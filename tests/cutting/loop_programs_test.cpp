@@ -147,7 +147,7 @@ MeshData of_family() {
 
 const Programs all_programs[] = {
     {"cube of hexahedra", cube<Bricks::hexahedra, 0>, 40},
-    {"cube of hybrid springs", cube<Bricks::hexahedra, 0>, 30, true, true},
+    {"cube of hybrid springs", cube<Bricks::hexahedra, 0>, 30, true},
     {"cube of wedges", cube<Bricks::wedges, 0>, 30},
     {"cube of pyramids", cube<Bricks::pyramids, 0>, 20},
     {"mixed cube", cube<Bricks::mixed, 0>, 30},

@@ -79,7 +79,7 @@ TEST(PartShares, DoNotDependOnHowTheMaterialIsDivided) {
 
 TEST(PartShares, OfPartsThatFillACellAddUpToOne) {
     std::vector<std::vector<double>> fractions{{0.25, 1.01, 0.0}, {0.5, 0.0, 0.0}};
-    fit_together(fractions);
+    fit_together(fractions, std::vector<double>(fractions.front().size(), 1.0));
     EXPECT_EQ(fractions,
               (std::vector<std::vector<double>>{{1.0 / 3, 1.0, 0.5}, {2.0 / 3, 0.0, 0.5}}));
 }
