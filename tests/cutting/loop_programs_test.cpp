@@ -145,17 +145,16 @@ MeshData of_family() {
     return {};
 }
 
-const Programs all_programs[] = {
-    {"cube of hexahedra", cube<Bricks::hexahedra, 0>, 40},
-    {"cube of hybrid springs", cube<Bricks::hexahedra, 0>, 30, true},
-    {"cube of wedges", cube<Bricks::wedges, 0>, 30},
-    {"cube of pyramids", cube<Bricks::pyramids, 0>, 20},
-    {"mixed cube", cube<Bricks::mixed, 0>, 30},
-    {"jittered cube of hexahedra", cube<Bricks::hexahedra, 15>, 40},
-    {"jittered mixed cube", cube<Bricks::mixed, 15>, 30},
-    {"hexahedra", of_family<0>, 15},
-    {"voxels", of_family<1>, 15},
-    {"mixed", of_family<2>, 60}};
+const Programs all_programs[] = {{"cube of hexahedra", cube<Bricks::hexahedra, 0>, 40},
+                                 {"cube of hybrid springs", cube<Bricks::hexahedra, 0>, 30, true},
+                                 {"cube of wedges", cube<Bricks::wedges, 0>, 30},
+                                 {"cube of pyramids", cube<Bricks::pyramids, 0>, 20},
+                                 {"mixed cube", cube<Bricks::mixed, 0>, 30},
+                                 {"jittered cube of hexahedra", cube<Bricks::hexahedra, 15>, 40},
+                                 {"jittered mixed cube", cube<Bricks::mixed, 15>, 30},
+                                 {"hexahedra", of_family<0>, 15},
+                                 {"voxels", of_family<1>, 15},
+                                 {"mixed", of_family<2>, 60}};
 
 class LoopPrograms : public testing::TestWithParam<Programs> {};
 

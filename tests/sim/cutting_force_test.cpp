@@ -90,10 +90,12 @@ TEST(CuttingForce, IsTheToughnessTimesTheWidthInCellsOfAllKinds) {
     for (const auto bricks : {Bricks::hexahedra, Bricks::wedges, Bricks::pyramids, Bricks::mixed}) {
         SCOPED_TRACE(static_cast<int>(bricks));
         WorldDef def = gel();
-        def.mesh = test::brick_cube(bricks, 6, 0.0, 1);
-        for (Vec3& x : def.mesh.points) x *= size;
+        topology::MeshData mesh = test::brick_cube(bricks, 6, 0.0, 1);
+        for (Vec3& x : mesh.points) x *= size;
+        def.mesh = std::move(mesh);
         const Cut cut = draw_wire(held(World(std::move(def))), wire(5.0, CuttingForce::report));
-        EXPECT_NEAR(cut.mean_force, 5.0 * size, 0.02 * 5.0 * size);
+        // In the step in which the wire passes a plane of the mesh it has no force: four in 145.
+        EXPECT_NEAR(cut.mean_force, 5.0 * size, 0.03 * 5.0 * size);
     }
 }
 
