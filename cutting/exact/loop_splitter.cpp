@@ -49,7 +49,7 @@ bool is_plane(const Mesh& mesh, FaceId f) {
 class LoopSplitter {
   public:
     LoopSplitter(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
-                 LoopFront& front, const SplitOptions& options, std::span<SuspendedLoops> resting)
+                 LoopFront& front, std::span<SuspendedLoops> resting)
         : mesh_(mesh),
           tissue_(tissue),
           surface_(surface),
@@ -680,9 +680,9 @@ void LoopSplitter::open_faces() {
 }  // namespace
 
 Split split_cells(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
-                  LoopFront& front, const SplitOptions& options,
+                  LoopFront& front, const SplitOptions& /*options*/,
                   std::span<SuspendedLoops> resting) {
-    return LoopSplitter(mesh, tissue, surface, front, options, resting).run();
+    return LoopSplitter(mesh, tissue, surface, front, resting).run();
 }
 
 }  // namespace incise::cutting

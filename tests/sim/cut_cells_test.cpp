@@ -107,8 +107,8 @@ struct CutBody {
 
 double potential_of(const Model& model, std::span<const Vec3> positions) {
     double sum = 0.0;
-    model.structure().elements().for_each_block([&](const physics::ElementBlock& block) {
-        sum += block.potential({positions, model.state().history(), 0.0});
+    model.structure().elements().for_each_block([&](const physics::ElementBlock& some) {
+        sum += some.potential({positions, model.state().history(), 0.0});
     });
     return sum;
 }
@@ -266,9 +266,9 @@ class FullTangent final : public physics::TangentSink {
     explicit FullTangent(const Model& model)
         : K(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(3 * model.positions().size()),
                                   static_cast<Eigen::Index>(3 * model.positions().size()))) {
-        model.structure().elements().for_each_block([&](const physics::ElementBlock& block) {
-            block.visit_tangents({model.positions(), model.state().history(), 0.0},
-                                 physics::TangentKind::exact, *this);
+        model.structure().elements().for_each_block([&](const physics::ElementBlock& some) {
+            some.visit_tangents({model.positions(), model.state().history(), 0.0},
+                                physics::TangentKind::exact, *this);
         });
     }
     void add(std::span<const std::uint32_t> nodes, std::span<const double> tangent) override {
