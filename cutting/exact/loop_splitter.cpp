@@ -30,6 +30,9 @@ namespace {
 /// Share of an edge: a node is not made nearer to an end, so that no edge is without length.
 constexpr double least_place = 2e-3;
 
+/// Any point, to ask a surface whether it is swept.
+const MovingPoint origin = {Vec3::Zero(), Vec3::Zero()};
+
 /// Share of an edge: a blade that passes nearer to a node of its own cut passes at the node. Two
 /// intersections with an edge at once that are nearer to each other cancel out.
 constexpr double nearness = default_snap;
@@ -55,7 +58,7 @@ class LoopSplitter {
           surface_(surface),
           front_(front),
           resting_(resting),
-          is_swept_(surface.ends_inside({MovingPoint{}, MovingPoint{}, MovingPoint{}}).has_value()),
+          is_swept_(surface.ends_inside({origin, origin, origin}).has_value()),
           num_old_nodes_(mesh.node_capacity()) {}
 
     Split run() {
