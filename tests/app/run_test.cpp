@@ -252,8 +252,8 @@ TEST_F(Run, ThatARefusedOrderStopsLeavesASummary) {
 {"tick":2,"orders":[{"move":"knife","at":[0,0,0],"rotation":[0,0,0,1]}]}
 {"tick":3}
 )");
-    const auto outcome = run(
-        {"scene.toml", "--quiet", "--replay", "hands.jsonl", "--set", "dynamics.end_time=0.05"});
+    const auto outcome = run({"scene.toml", "--quiet", "--out", "scene.out", "--replay",
+                              "hands.jsonl", "--set", "dynamics.end_time=0.05"});
     EXPECT_EQ(outcome.status, 2);
     const testing::Matcher<const std::string&> has_its_form = testing::MatchesRegex(
         "incise: scene: step [0-9]+, t = 0\\.02 s: tick 2 of the recording: there is no tool "
