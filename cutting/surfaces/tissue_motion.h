@@ -12,7 +12,9 @@
 namespace incise::cutting {
 
 /// The body during one step. Nodes move straight from `before` to `after`, m, by vertex id.
-/// @lifetime  the mesh, the positions and the boxes must outlive the object
+/// @lifetime  the mesh, the positions and the boxes must outlive the object; rest_positions() of a
+/// mesh
+///            that is cut do not, as it takes more memory for its nodes
 struct TissueMotion {
     const topology::Mesh& mesh;
     std::span<const Vec3> before, after;
