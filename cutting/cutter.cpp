@@ -150,7 +150,7 @@ Split Cutter::split(CutId id, Mesh& mesh, const std::vector<Vec3>& edge_before,
             auto resting = suspended_cuts(id.index, &Cut::loops);
             done = noted(
                 split_cells(mesh, tissue, SweptEdge(shifted(edge_before), shifted(edge_after)),
-                            cut.loops, {cut.snap}, resting),
+                            cut.loops, resting),
                 id.index);
         }
     } else if (!cut.front.is_empty() || tissue.may_meet(box_round(edge_before, edge_after))) {
@@ -190,8 +190,7 @@ Split Cutter::split(Mesh& mesh, const CutSurface& surface, double snap) {
             for (auto& [n, opened] : opened_)
                 if (!opened.is_moved) move_inside(n, opened, positions);
         }
-        return noted(split_cells(mesh, motion(mesh), surface, front, {snap}, resting),
-                     std::nullopt);
+        return noted(split_cells(mesh, motion(mesh), surface, front, resting), std::nullopt);
     }
     CutFront front;
     auto resting = suspended_cuts(std::nullopt, &Cut::front);
@@ -303,9 +302,16 @@ std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) cons
 }
 
 bool Cutter::is_on(const Mesh& mesh) const {
+    const auto is_there = [&](VertexId n) { return n.index() < mesh.node_capacity(); };
     return boxes_.cover(mesh) && now_.values().size() == mesh.node_capacity() &&
-           std::ranges::all_of(cuts_, [&](const Cut& cut) {
-               return cut.front.is_on(mesh) && cut.loops.is_on(mesh);
+           std::ranges::all_of(
+               cuts_,
+               [&](const Cut& cut) { return cut.front.is_on(mesh) && cut.loops.is_on(mesh); }) &&
+           std::ranges::all_of(opened_, [&](const auto& entry) {
+               return is_there(entry.first) &&
+                      std::ranges::all_of(entry.second.around, [&](const auto& neighbours) {
+                          return is_there(neighbours.first) && is_there(neighbours.second);
+                      });
            });
 }
 

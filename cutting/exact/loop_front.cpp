@@ -121,8 +121,29 @@ bool LoopFront::is_cut_face(const Mesh& mesh, FaceId f) const {
 }
 
 bool LoopFront::is_on(const Mesh& mesh) const {
-    return std::ranges::all_of(
-        nodes_, [&](const auto& entry) { return entry.first.index() < mesh.node_capacity(); });
+    const auto is_there = [&](VertexId n) { return n.index() < mesh.node_capacity(); };
+    const auto are_there = [&](const std::vector<Edge>& edges) {
+        return std::ranges::all_of(
+            edges, [&](const Edge& edge) { return is_there(edge.a) && is_there(edge.b); });
+    };
+    const auto all_of = [](const auto& map, auto test) {
+        return std::ranges::all_of(
+            map, [&](const auto& entry) { return test(entry.first, entry.second); });
+    };
+    return all_of(nodes_, [&](VertexId n, const Node&) { return is_there(n); }) &&
+           all_of(marked_,
+                  [&](VertexId n, const std::vector<VertexId>& others) {
+                      return is_there(n) && std::ranges::all_of(others, is_there);
+                  }) &&
+           all_of(idle_,
+                  [&](VertexId n, const std::vector<Edge>& neighbours) {
+                      return is_there(n) && are_there(neighbours);
+                  }) &&
+           all_of(open_,
+                  [&](CellId e, const std::vector<Edge>& edges) {
+                      return e.index() < mesh.element_capacity() && are_there(edges);
+                  }) &&
+           are_there(debts_);
 }
 
 /// Marked edges to other nodes on the cut stay: these do not wait in the faces there.

@@ -90,7 +90,7 @@ class LoopFront {
     /// Follows the division of a cell: open edges that it has lost are those of the added part.
     void divide(const topology::Mesh& mesh, CellId kept, CellId added);
 
-    /// True if the nodes on the cut exist in the mesh.
+    /// True if the mesh has all nodes and cells that it names.
     bool is_on(const topology::Mesh& mesh) const;
     /// Follows an edit: copies of nodes are on the cut as their sources are.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);

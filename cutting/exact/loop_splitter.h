@@ -23,10 +23,9 @@ using SuspendedLoops = SuspendedCutOf<LoopFront>;
 /// @param tissue   its motion in this step
 /// @param surface  what the cut follows
 /// @param front    of the cut, from its earlier steps
-/// @param options  have no effect: a fixed share of an edge decides what is at a node of the cut
 /// @param resting  the other cuts in progress
 /// Cost: some microseconds a crossed cell, and the search for them.
 Split split_cells(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
-                  LoopFront& front, const SplitOptions& options, std::span<SuspendedLoops> resting);
+                  LoopFront& front, std::span<SuspendedLoops> resting);
 
 }  // namespace incise::cutting

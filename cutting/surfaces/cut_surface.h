@@ -48,6 +48,8 @@ class CutSurface {
         return std::nullopt;
     }
     virtual SurfaceIdentity identity() const { return no_identity; }
+    /// True if an edge that moves, as that of a blade, makes the surface during the step.
+    virtual bool is_swept() const { return false; }
     /// True if the boundary at which a sweep ends, and the next one begins, passes through a
     /// triangle an odd number of times. The triangle is that after the step. The result is exact
     /// and agrees with the intersections of this step and the next. Returns nothing if the surface

@@ -14,6 +14,7 @@ class SweptEdge final : public CutSurface {
     /// @pre  `before` and `after` have the same number of points, at least two
     SweptEdge(std::vector<Vec3> before, std::vector<Vec3> after);
 
+    bool is_swept() const override { return true; }
     bool may_meet(const Box& box) const override;
     bool may_meet_hull(std::span<const MovingPoint> points) const override;
     void append_crossings(const MovingPoint& a, const MovingPoint& b,

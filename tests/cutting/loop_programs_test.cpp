@@ -102,7 +102,7 @@ class Patient {
             deform(model_, 0.02, size_, random_);
             const Balance before(model_);
             const Split done = split_cells(
-                mesh_, {mesh_, positions_before, model_.mesh_positions()}, *surface, front, {}, {});
+                mesh_, {mesh_, positions_before, model_.mesh_positions()}, *surface, front, {});
             if (done.changes.is_empty()) continue;
             num_divided_ += done.changes.elements_added.size();
             edits_.push_back(model_.apply(mesh_, done.changes));

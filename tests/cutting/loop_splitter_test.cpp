@@ -146,7 +146,7 @@ class Body {
           volume_before(sum(rest_volumes())) {}
 
     Split cut(const CutSurface& surface, LoopFront& front, std::span<SuspendedLoops> resting = {}) {
-        Split done = split_cells(mesh, {mesh, positions, positions}, surface, front, {}, resting);
+        Split done = split_cells(mesh, {mesh, positions, positions}, surface, front, resting);
         for (const auto& record : done.changes.nodes_added) {
             Vec3 x = Vec3::Zero();
             for (int k = 0; k < record.num_sources; ++k)

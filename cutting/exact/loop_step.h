@@ -1,0 +1,144 @@
+// One step of a cut through cells of any shape. For loop_splitter.cpp and its parts alone.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cassert>
+#include <limits>
+#include <optional>
+#include <queue>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "incise/cutting/exact/edge_intersections.h"
+#include "incise/cutting/exact/edge_list.h"
+#include "incise/cutting/exact/loop_splitter.h"
+#include "incise/cutting/exact/turn.h"
+#include "incise/topology/mesh_edit.h"
+
+namespace incise::cutting {
+
+/// Makes the edit of one step of a cut: see split_cells(). Used once.
+class LoopStep {
+  public:
+    LoopStep(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
+             LoopFront& front, std::span<SuspendedLoops> resting)
+        : mesh_(mesh),
+          tissue_(tissue),
+          surface_(surface),
+          front_(front),
+          resting_(resting),
+          is_swept_(surface.is_swept()),
+          num_old_nodes_(mesh.node_capacity()) {}
+
+    Split run();
+
+  private:
+    /// Share of an edge: a blade that passes nearer to a node of its own cut passes at the node.
+    /// Two intersections with an edge at once that are nearer to each other cancel out.
+    static constexpr double nearness = default_snap;
+    /// Share of an edge: a node is not made nearer to an end, so that no edge is without length.
+    static constexpr double least_place = 2e-3;
+
+    MovingPoint point(VertexId n) const {
+        if (n.index() < num_old_nodes_)
+            return {tissue_.before[n.index()], tissue_.after[n.index()]};
+        return new_points_[n.index() - num_old_nodes_];
+    }
+    double rest_length(VertexId a, VertexId b) const {
+        return (mesh_.rest_position(b) - mesh_.rest_position(a)).norm();
+    }
+    /// Gives a new node its motion: that of the points it lies between.
+    void place_new_node(VertexId n, std::span<const std::pair<VertexId, double>> sources) {
+        assert(n.index() == num_old_nodes_ + new_points_.size());
+        (void)n;
+        MovingPoint x{Vec3::Zero(), Vec3::Zero()};
+        for (const auto& [source, weight] : sources) {
+            const MovingPoint at = point(source);
+            for (std::size_t i = 0; i < 2; ++i) x[i] += weight * at[i];
+        }
+        new_points_.push_back(x);
+    }
+
+    /// A cut that is not finished, with its blade where it is, or where it ends this step.
+    struct Cut {
+        LoopFront& front;
+        const SuspendedLoops* resting;  // null for the cut that is made
+    };
+    /// One of the two parts of a divided face, for such a cut.
+    struct Half {
+        std::vector<VertexId> waiting;  ///< nodes of the cut
+        bool is_odd;  ///< true if an odd number of times it waits, or crosses an edge later
+        std::optional<Vec3> pierced;  ///< where its blade passes through, m
+        Vec3 normal;                  ///< times twice the area, m2
+        /// True if the cut comes in as often as it goes out, and ends at its blade.
+        bool is_settled() const { return is_odd == pierced.has_value(); }
+    };
+    /// Passes each cut, or each one but that of a front.
+    template <class Visit>
+    void for_cuts(const LoopFront* but, Visit visit) {
+        if (but != &front_) visit(Cut{front_, nullptr});
+        for (SuspendedLoops& blade : resting_)
+            if (&blade.front != but) visit(Cut{blade.front, &blade});
+    }
+
+    // What the surface crosses: loop_splitter.cpp.
+    void find_crossed_edges();
+    void receive(const Edge& edge, EdgeIntersections intersections);
+    void divide_warped_faces();
+    void divide_next();
+    bool is_at_own_node(const Edge& edge, const EdgeIntersection& intersection) const;
+
+    // How edges, faces and cells are divided and opened: loop_division.cpp.
+    VertexId divide_edge(VertexId a, VertexId b, double place);
+    void note_rings(VertexId middle, VertexId a, std::span<const CellId> cells);
+    std::vector<CellId> star(VertexId v) const;
+    std::vector<FaceId> faces_at(VertexId v) const;
+    std::optional<VertexId> waiting_partner(const LoopFront& front, FaceId f, VertexId v) const;
+    void join_at(LoopFront& front, VertexId v);
+    void join_all();
+    void join(LoopFront& front, FaceId f, VertexId v, VertexId w);
+    std::vector<LoopFront*> cuts_with(FaceId f);
+    std::vector<VertexId> divide_face(FaceId f, VertexId v, VertexId w);
+    std::vector<VertexId> path_from(const LoopFront& front, CellId e, VertexId v, VertexId w) const;
+    void close(LoopFront& front, CellId e, VertexId v, VertexId w);
+    void divide_at_centre(FaceId f);
+    void triangulate_all();
+    void open_faces();
+
+    // What other cuts make of it: loop_passing.cpp.
+    void make_wait_in(LoopFront& front, FaceId f, std::span<const VertexId> path);
+    Vec3 now(const Cut& cut, VertexId n) const;
+    Half half_of(const Cut& cut, FaceId f) const;
+    void let_pass(const Cut& cut, CellId e, std::vector<VertexId>& path,
+                  bool is_one_of_many = false);
+    bool receive_later(std::span<const VertexId> path);
+    std::pair<std::size_t, double> passing_place(const Cut& cut, std::span<const VertexId> path,
+                                                 std::span<const Half, 2> halves) const;
+
+    topology::Mesh& mesh_;
+    const TissueMotion& tissue_;
+    const CutSurface& surface_;
+    LoopFront& front_;
+    const std::span<SuspendedLoops> resting_;
+    const bool is_swept_;
+    double time_ = 0.0;  // of the intersection that is the last one so far
+    const std::size_t num_old_nodes_;
+    std::optional<topology::MeshEdit> edit_;  // once there is something to do
+
+    std::vector<MovingPoint> new_points_;
+    std::unordered_map<Edge, EdgeIntersections, EdgeHash> pending_;  // in the order of times
+    std::priority_queue<Turn> queue_;
+    std::vector<CellId> crossed_;  // in ascending order
+    std::vector<VertexId> made_;   // nodes on crossed edges
+    /// One cell of each ring, of nodes whose cells are in several rings.
+    std::unordered_map<VertexId, std::vector<CellId>> rings_;
+    std::vector<CellId> divided_;  // cells at divided edges and faces, and parts of such
+    /// Nodes that cuts may still get on new edges. No step needs as many: the bound is there so
+    /// that a contradiction, as rounding could make it, ends.
+    std::size_t passes_left_ = std::numeric_limits<std::size_t>::max();
+    SplitReport report_;
+};
+
+}  // namespace incise::cutting
