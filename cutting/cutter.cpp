@@ -58,11 +58,11 @@ Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions, bool has_loops
 void Cutter::follow_motion(const Mesh& mesh, std::span<const Vec3> positions) {
     std::swap(before_, now_);
     now_.assign(positions);
+    for (auto& [n, opened] : opened_) move_inside(n, opened, positions);
     double largest = 0.0;
     for (std::size_t n = 0; n < positions.size(); ++n)
-        largest = std::max(largest, (positions[n] - before_.values()[n]).squaredNorm());
-    boxes_.move(mesh, positions, std::sqrt(largest));
-    for (auto& [n, opened] : opened_) move_inside(n, opened, positions);
+        largest = std::max(largest, (now_.values()[n] - before_.values()[n]).squaredNorm());
+    boxes_.move(mesh, now_.values(), std::sqrt(largest));
     for (Cut& cut : cuts_) cut.has_moved = false;
 }
 
@@ -114,13 +114,20 @@ const Cutter::Cut& Cutter::cut_of(CutId id) const {
 
 Cutter::Cut& Cutter::cut_of(CutId id) { return const_cast<Cut&>(std::as_const(*this).cut_of(id)); }
 
-/// Returns the edge of a blade a little to one side. A blade often stops exactly on nodes, edges
-/// and faces of a mesh, where rounding would decide what it has crossed: nodes that a cut has made
-/// lie off their edges by rounding. The direction has no simple ratio to those of a mesh.
-std::vector<Vec3> Cutter::shifted(std::vector<Vec3> edge) const {
-    const Vec3 direction(0.5377, 0.6431, 0.5453);
-    if (has_loops_)
-        for (Vec3& x : edge) x += shift_ * direction;
+/// Returns the edge of the blade of a cut a little to one side. A blade often stops exactly on
+/// nodes, edges and faces of a mesh, where rounding would decide what it has crossed: nodes that a
+/// cut has made lie off their edges by rounding. The directions have no simple ratios to those of a
+/// mesh. Each cut has its own, as blades also stop exactly in each other's planes.
+std::vector<Vec3> Cutter::shifted(std::size_t cut, std::vector<Vec3> edge) const {
+    if (!has_loops_) return edge;
+    // Shares of 1 that never come close to each other as the number of the cut grows.
+    const Vec3 ratio(0.819172513, 0.671043607, 0.549700478);
+    Vec3 direction;
+    for (int c = 0; c < 3; ++c) {
+        double whole;
+        direction[c] = 0.5 + 0.5 * std::modf(static_cast<double>(cut + 1) * ratio[c], &whole);
+    }
+    for (Vec3& x : edge) x += shift_ * direction;
     return edge;
 }
 
@@ -130,7 +137,8 @@ std::vector<SuspendedCutOf<Front>> Cutter::suspended_cuts(std::optional<std::siz
     std::vector<SuspendedCutOf<Front>> resting;
     for (std::size_t i = 0; i < cuts_.size(); ++i)
         if (Cut& cut = cuts_[i]; i != worker && !(cut.*front).is_empty())
-            resting.push_back({cut.*front, {shifted(cut.edge), shifted(cut.edge)}, cut.has_moved});
+            resting.push_back(
+                {cut.*front, {shifted(i, cut.edge), shifted(i, cut.edge)}, cut.has_moved});
     return resting;
 }
 
@@ -148,10 +156,11 @@ Split Cutter::split(CutId id, Mesh& mesh, const std::vector<Vec3>& edge_before,
     if (has_loops_) {
         if (tissue.may_meet(box_round(edge_before, edge_after))) {
             auto resting = suspended_cuts(id.index, &Cut::loops);
-            done = noted(
-                split_cells(mesh, tissue, SweptEdge(shifted(edge_before), shifted(edge_after)),
-                            cut.loops, resting),
-                id.index);
+            done = noted(split_cells(mesh, tissue,
+                                     SweptEdge(shifted(id.index, edge_before),
+                                               shifted(id.index, edge_after)),
+                                     cut.loops, resting),
+                         id.index);
         }
     } else if (!cut.front.is_empty() || tissue.may_meet(box_round(edge_before, edge_after))) {
         auto resting = suspended_cuts(id.index, &Cut::front);
@@ -187,8 +196,13 @@ Split Cutter::split(Mesh& mesh, const CutSurface& surface, double snap) {
             std::ranges::any_of(opened_, [](const auto& entry) { return !entry.second.is_moved; });
         if (has_new && resting.empty()) {  // a blade at work has to see nodes move, not jump
             const std::vector<Vec3> positions(now_.values().begin(), now_.values().end());
-            for (auto& [n, opened] : opened_)
-                if (!opened.is_moved) move_inside(n, opened, positions);
+            double largest = 0.0;
+            for (auto& [n, opened] : opened_) {
+                if (opened.is_moved) continue;
+                move_inside(n, opened, positions);
+                largest = std::max(largest, opened.margin);
+            }
+            boxes_.move(mesh, now_.values(), largest);
         }
         return noted(split_cells(mesh, motion(mesh), surface, front, resting), std::nullopt);
     }
@@ -278,7 +292,7 @@ std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) cons
     const Cut& cut = cut_of(id);
     std::vector<FaceId> found;
     if (cut.front.is_empty() && cut.loops.is_empty()) return found;
-    const SweptEdge edge(shifted(cut.edge), shifted(cut.edge));
+    const SweptEdge edge(shifted(id.index, cut.edge), shifted(id.index, cut.edge));
     const auto at = [&](VertexId n) { return MovingPoint{now_[n], now_[n]}; };
     for (const CellId e : mesh.elements())
         for (int k = 0; k < mesh.num_faces(e); ++k) {
@@ -289,7 +303,7 @@ std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) cons
             for (int p = 0; p < size; ++p) {
                 const VertexId n = mesh.face_corner(face, p),
                                next = mesh.face_corner(face, (p + 1) % size);
-                is_odd ^= cut.front.is_crossed(n, next) || cut.loops.owes(n, next);
+                is_odd ^= cut.front.is_crossed(n, next) || cut.loops.passed_at(n, next).is_valid();
                 is_odd ^= cut.loops.waits(mesh, face, n);
                 if (p > 1)
                     is_pierced ^= edge.ends_inside({at(mesh.face_corner(face, 0)),

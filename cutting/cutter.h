@@ -156,7 +156,7 @@ class Cutter {
 
     Cut& cut_of(CutId id);
     const Cut& cut_of(CutId id) const;
-    std::vector<Vec3> shifted(std::vector<Vec3> edge) const;
+    std::vector<Vec3> shifted(std::size_t cut, std::vector<Vec3> edge) const;
     /// Returns the other cuts in progress, whose fronts an edit by cut `worker` may touch.
     template <class Front>
     std::vector<SuspendedCutOf<Front>> suspended_cuts(std::optional<std::size_t> worker,

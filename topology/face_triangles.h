@@ -23,14 +23,14 @@ class Ears {
     /// Returns a corner; positions count round the polygon.
     VertexId corner(std::size_t position) const { return corners_[position % size()]; }
     /// Returns the position of the corner that is cut off next. Leaves out those for which
-    /// may_cut(before, after) is false, where these are its neighbours; nothing if there is no
-    /// other.
+    /// may_cut(before, corner, after) is false, where these are it and its neighbours; nothing if
+    /// there is no other.
     template <class MayCut>
     std::optional<std::size_t> best(MayCut may_cut) const {
         std::optional<std::size_t> best;
         double most = 0.0;
         for (std::size_t p = 0; p < size(); ++p) {
-            if (!may_cut(corner(p + size() - 1), corner(p + 1))) continue;
+            if (!may_cut(corner(p + size() - 1), corner(p), corner(p + 1))) continue;
             double quality = quality_of(p);
             if (size() == 4) quality = std::min(quality, quality_of((p + 2) % 4));  // the rest
             if (best && quality <= most) continue;
@@ -68,7 +68,7 @@ void for_each_triangle(const Mesh& mesh, FaceId f, Visit visit) {
     }
     Ears ears(mesh, f);
     while (ears.size() > 3) {
-        const std::size_t p = *ears.best([](VertexId, VertexId) { return true; });
+        const std::size_t p = *ears.best([](VertexId, VertexId, VertexId) { return true; });
         visit(ears.corner(p + ears.size() - 1), ears.corner(p), ears.corner(p + 1));
         ears.cut(p);
     }

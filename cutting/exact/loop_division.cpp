@@ -13,16 +13,31 @@ namespace incise::cutting {
 using topology::Dart;
 using topology::Mesh;
 
+/// Takes this cut, which goes through a node, to the other side of an edge there.
+void LoopStep::pass_at(VertexId v, VertexId end) {
+    std::vector<VertexId>
+        others;  // of the corners: those of several faces have the same neighbours
+    for (const FaceId f : faces_at(v)) {
+        const LoopFront::Corner corner = LoopFront::corner(mesh_, f, v);
+        if (corner.previous != end && corner.next != end) continue;
+        const VertexId other = corner.previous == end ? corner.next : corner.previous;
+        if (std::ranges::find(others, other) != others.end()) continue;
+        others.push_back(other);
+        front_.set_waiting(corner, !front_.waits(corner));
+    }
+}
+
 /// Divides an edge for all cuts.
 VertexId LoopStep::divide_edge(VertexId a, VertexId b, double place) {
-    std::vector<CellId> cells;
-    append_cells_at_edge(mesh_, mesh_.incident_element(a), a, b, cells);
+    std::vector<CellId> cells = star(a);
+    std::erase_if(cells, [&](CellId e) { return !find_dart(mesh_, e, a, b).is_valid(); });
     assert(!cells.empty());
     divided_.insert(divided_.end(), cells.begin(), cells.end());
     const double length = rest_length(a, b);
     const VertexId middle = edit_->divide_edge(find_dart(mesh_, cells.front(), a, b), place);
     place_new_node(middle, std::array{std::pair(a, 1.0 - place), std::pair(b, place)});
     note_rings(middle, a, cells);
+    divide_pending(edge_between(a, b), middle, a < b ? place : 1.0 - place);
     front_.divide(a, b, middle, length);
     for (SuspendedLoops& blade : resting_) blade.front.divide(a, b, middle, length);
     return middle;
@@ -74,13 +89,61 @@ std::vector<FaceId> LoopStep::faces_at(VertexId v) const {
     return faces;
 }
 
-/// Returns another node that waits in the face.
+/// Returns another node that waits in the face, to be joined with the node: one that has no edge of
+/// the cut there. Of nodes that have such an edge two belong together, which the blade passed when
+/// it went back. They are not joined, as the edge would lie beside the cut, but for the odd one.
 std::optional<VertexId> LoopStep::waiting_partner(const LoopFront& front, FaceId f,
                                                   VertexId v) const {
-    for (int p = 0; p < mesh_.face_size(f); ++p)
-        if (const VertexId n = mesh_.face_corner(f, p); n != v && front.waits(mesh_, f, n))
-            return n;
-    return std::nullopt;
+    std::optional<VertexId> free, joined;
+    bool is_odd = false;
+    for (int p = 0; p < mesh_.face_size(f); ++p) {
+        const VertexId n = mesh_.face_corner(f, p);
+        const LoopFront::Corner corner = LoopFront::corner(mesh_, f, n);
+        if (!front.waits(corner)) continue;
+        const bool is_joined = front.is_joined(corner);
+        if (is_joined) is_odd = !is_odd;
+        if (n != v && !(is_joined ? joined : free)) (is_joined ? joined : free) = n;
+    }
+    if (!front.is_joined(LoopFront::corner(mesh_, f, v))) return free || !is_odd ? free : joined;
+    return is_odd ? free : std::nullopt;
+}
+
+/// Where a node waits in a face, and only an edge that the blade has passed at another node of the
+/// cut can be where the cut leaves the face again, takes the cut to the other side of that edge.
+void LoopStep::settle() {
+    std::vector<VertexId> nodes = made_;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        for (bool is_done = false; !is_done;) {
+            is_done = true;
+            for (const FaceId f : faces_at(nodes[i])) {
+                const auto edge = edge_to_pass(f);
+                if (!edge) continue;
+                front_.toggle_passed(*edge);
+                pass_at(edge->node, edge->end);
+                join_at(front_, edge->node);
+                is_done = false;
+                break;
+            }
+        }
+}
+
+std::optional<LoopFront::PassedEdge> LoopStep::edge_to_pass(FaceId f) const {
+    int num_free = 0;
+    std::optional<LoopFront::PassedEdge> found;
+    bool is_odd = false;
+    const int size = mesh_.face_size(f);
+    for (int p = 0; p < size; ++p) {
+        const VertexId n = mesh_.face_corner(f, p), after = mesh_.face_corner(f, (p + 1) % size);
+        const LoopFront::Corner corner = LoopFront::corner(mesh_, f, n);
+        if (front_.waits(corner)) ++num_free;
+        const VertexId node = front_.passed_at(n, after);
+        if (!node.is_valid()) continue;
+        is_odd = !is_odd;
+        if (!found && !front_.waits(mesh_, f, node))
+            found = LoopFront::PassedEdge{node, node == n ? after : n};
+    }
+    if (num_free != 1 || !is_odd) return std::nullopt;
+    return found;
 }
 
 /// Joins a node with those that wait for it in the faces at it. In a face that is plane, a straight
@@ -137,7 +200,11 @@ void LoopStep::join(LoopFront& front, FaceId f, VertexId v, VertexId w) {
         front.set_open(f.cell, path[i], path[i + 1]);
         if (other.is_valid()) front.set_open(other.cell, path[i], path[i + 1]);
     }
-    for_cuts(&front, [&](const Cut& cut) { let_pass(cut, f.cell, path); });
+    const Dart along = find_dart(mesh_, f.cell, path[0], path[1]);
+    for (const FaceId part : {along.face, opposite(mesh_, along).face})
+        for (const VertexId n : {v, w}) front.set_waiting(LoopFront::corner(mesh_, part, n), false);
+    cross_again(front, f.cell, path);
+    let_all_pass(&front, f.cell, path);
     const VertexId end = path[1];
     // Other cuts can have divided the cells meanwhile.
     for (const CellId e : star(v))
@@ -186,26 +253,80 @@ std::vector<VertexId> LoopStep::divide_face(FaceId f, VertexId v, VertexId w) {
     return path;
 }
 
-/// Returns the closed path of open edges of a cell that begins with an edge; empty if it is not
-/// closed.
+/// Goes round a node of a cell, from an edge that comes to it, to the next place where the cut is:
+/// an open edge, or a corner at which the node waits. Returns the other end of the edge; an invalid
+/// id at a corner, and if there is only the edge from which it starts.
+/// @param arriving  the dart to the node
+/// @param is_left   true to turn to the faces on the left of the dart first
+VertexId LoopStep::turn(const LoopFront& front, Dart arriving, bool is_left) const {
+    const VertexId n = to(mesh_, arriving), start = from(mesh_, arriving);
+    const std::vector<Edge>& open = front.open_edges(arriving.face.cell);
+    Dart side = is_left ? arriving : opposite(mesh_, arriving);  // in a face at the node
+    for (int left = mesh_.num_faces(side.face.cell); left > 0; --left) {
+        const Dart leaving = is_left ? next(mesh_, side) : previous(mesh_, side);
+        const VertexId end = is_left ? to(mesh_, leaving) : from(mesh_, leaving);
+        if (front.waits(mesh_, side.face, n) || end == start) return {};
+        if (std::ranges::find(open, edge_between(n, end)) != open.end()) return end;
+        side = opposite(mesh_, leaving);
+    }
+    return {};
+}
+
+/// Returns a closed path of open edges of a cell, which an edge from v to w has completed; empty if
+/// there is none. At a node with several ways the path turns to the next edge, so that it does not
+/// part what belongs together.
 std::vector<VertexId> LoopStep::path_from(const LoopFront& front, CellId e, VertexId v,
                                           VertexId w) const {
     const std::vector<Edge>& open = front.open_edges(e);
-    std::vector<VertexId> path{v, w};
-    for (;;) {
-        VertexId next;
-        for (const Edge& edge : open) {
-            if (edge.a != path.back() && edge.b != path.back()) continue;
-            const VertexId far = edge.a == path.back() ? edge.b : edge.a;
-            if (far == path[path.size() - 2]) continue;
-            if (next.is_valid()) return {};  // two ways: it stays whole
-            next = far;
+    const auto num_ways = [&](VertexId n) {
+        return std::ranges::count_if(open, [&](const Edge& x) { return x.a == n || x.b == n; }) - 1;
+    };
+    for (const bool is_left : {true, false}) {
+        std::vector<VertexId> path{v, w};
+        for (;;) {
+            const VertexId before = path[path.size() - 2], n = path.back();
+            VertexId end;
+            if (num_ways(n) == 1) {
+                for (const Edge& x : open)
+                    if (x.a == n ? x.b != before : x.b == n && x.a != before)
+                        end = x.a == n ? x.b : x.a;
+            } else {
+                const Dart arriving = find_dart(mesh_, e, before, n);
+                end = turn(front, arriving, is_left);
+                if (!end.is_valid()) end = turn(front, arriving, !is_left);
+            }
+            if (!end.is_valid()) break;
+            const auto first = std::ranges::find(path, end);
+            if (first == path.end()) {
+                path.push_back(end);
+                continue;
+            }
+            path.erase(path.begin(), first);
+            if (path.size() > 2 &&
+                (num_ways(end) == 1 || parts_evenly(front, e, path.back(), path[0], path[1])))
+                return path;
+            break;
         }
-        if (!next.is_valid()) return {};
-        if (next == v) return path;
-        if (std::ranges::find(path, next) != path.end()) return {};
-        path.push_back(next);
     }
+    return {};
+}
+
+/// True if a path in a cell leaves an even number of places where the cut is on each side of a
+/// node: open edges, and corners at which the node waits.
+bool LoopStep::parts_evenly(const LoopFront& front, CellId e, VertexId from_node, VertexId n,
+                            VertexId to_node) const {
+    const std::vector<Edge>& open = front.open_edges(e);
+    bool is_even = true;
+    Dart side = find_dart(mesh_, e, from_node, n);
+    for (int left = mesh_.num_faces(e); left > 0; --left) {
+        if (front.waits(mesh_, side.face, n)) is_even = !is_even;
+        const Dart leaving = next(mesh_, side);
+        const VertexId end = to(mesh_, leaving);
+        if (end == to_node || end == from_node) return is_even;
+        if (std::ranges::find(open, edge_between(n, end)) != open.end()) is_even = !is_even;
+        side = opposite(mesh_, leaving);
+    }
+    return false;
 }
 
 /// Divides a cell if the edge completes a closed path.
@@ -230,6 +351,9 @@ void LoopStep::close(LoopFront& front, CellId e, VertexId v, VertexId w) {
         if (cut.resting != nullptr || is_swept_)
             for (const VertexId n : path) join_at(cut.front, n);
     });
+    // The path can be another one, which touches that of the edge.
+    for (const CellId part : {e, added})
+        if (find_dart(mesh_, part, v, w).is_valid()) close(front, part, v, w);
 }
 
 /// Divides a face, which lies on a cut, by a node in its middle.
@@ -255,13 +379,15 @@ void LoopStep::divide_at_centre(FaceId f) {
         for_cuts(nullptr, [&](const Cut& cut) { cut.front.divide(corner, centre); });
         for (LoopFront* front : owners) front->mark(corner.node, centre);
     }
+    Passed passed;
     for (const LoopFront::Corner& corner : corners) {
         std::vector<VertexId> path{corner.node, centre};
         for_cuts(nullptr, [&](const Cut& cut) {
             if (std::ranges::find(unsettled, &cut.front) == unsettled.end())
-                let_pass(cut, f.cell, path, true);
+                let_pass(cut, f.cell, path, passed, true);
         });
     }
+    join(passed);
 }
 
 /// Divides the faces on cuts into triangles. They are plane then, and later cuts do not change the
@@ -273,15 +399,27 @@ void LoopStep::triangulate_all() {
     const auto is_done = [&](FaceId f) {
         return mesh_.face_size(f) == 3 || !mesh_.neighbor(f).is_valid() || cuts_with(f).empty();
     };
-    passes_left_ = 64 + 8 * divided_.size();
+    passes_left_ = most_passes(divided_.size());
     for (std::size_t i = 0; i < divided_.size(); ++i) {  // more are added
         const CellId e = divided_[i];
         for (int f = 0; f < mesh_.num_faces(e); ++f)
             while (!is_done({e, f})) {
-                if (const auto ends = next_ear(mesh_, {e, f})) {
+                const auto waits = [&](VertexId n) {
+                    bool is_any = false;
+                    for_cuts(nullptr, [&](const Cut& cut) {
+                        is_any = is_any || cut.front.waits(mesh_, {e, f}, n);
+                    });
+                    return is_any;
+                };
+                const int size = mesh_.face_size({e, f});
+                int num_waiting = 0;
+                for (int p = 0; p < size; ++p) num_waiting += waits(mesh_.face_corner({e, f}, p));
+                // Two cuts that go to the same place would pass each edge, and wait there again.
+                if (num_waiting > 1 && size <= num_waiting + 2) break;
+                if (const auto ends = next_ear(mesh_, {e, f}, waits)) {
                     std::vector<VertexId> path = divide_face({e, f}, ends->first, ends->second);
-                    for_cuts(nullptr, [&](const Cut& cut) { let_pass(cut, e, path); });
-                } else if (mesh_.face_size({e, f}) <= topology::max_corners) {
+                    let_all_pass(nullptr, e, path);
+                } else if (size <= topology::max_corners) {
                     divide_at_centre({e, f});
                 } else {
                     break;  // its corners lie on a line

@@ -47,15 +47,14 @@ void LoopFront::divide(const Mesh& mesh, CellId kept, CellId added) {
 
 void LoopFront::divide(VertexId a, VertexId b, VertexId middle, double local_edge_length) {
     for (const auto& [n, other] : {std::pair(a, b), std::pair(b, a)})
-        if (const auto it = idle_.find(n); it != idle_.end())
+        if (const auto it = switched_.find(n); it != switched_.end())
             for (Edge& neighbours : it->second)
                 if (neighbours.a == other || neighbours.b == other)
                     neighbours =
                         edge_between(neighbours.a == other ? neighbours.b : neighbours.a, middle);
-    if (owes(a, b)) {
-        toggle_debt(a, b);
-        toggle_debt(is_on(a) ? a : b, middle);  // it is of the node at which the blade has passed
-    }
+    for (PassedEdge& edge : passed_)
+        if ((edge.node == a && edge.end == b) || (edge.node == b && edge.end == a))
+            edge.end = middle;
     if (!is_marked(a, b)) return;
     std::erase(marked_[a], b);
     std::erase(marked_[b], a);
@@ -71,13 +70,19 @@ void LoopFront::divide(VertexId a, VertexId b, VertexId middle, double local_edg
     }
 }
 
-void LoopFront::toggle_debt(VertexId a, VertexId b) {
-    const Edge edge = edge_between(a, b);
-    const auto it = std::ranges::find(debts_, edge);
-    if (it == debts_.end())
-        insert_sorted(debts_, edge);
+VertexId LoopFront::passed_at(VertexId a, VertexId b) const {
+    for (const PassedEdge& edge : passed_)
+        if ((edge.node == a && edge.end == b) || (edge.node == b && edge.end == a))
+            return edge.node;
+    return {};
+}
+
+void LoopFront::toggle_passed(const PassedEdge& edge) {
+    const auto it = std::ranges::find(passed_, edge);
+    if (it == passed_.end())
+        passed_.push_back(edge);
     else
-        debts_.erase(it);
+        passed_.erase(it);
 }
 
 LoopFront::Corner LoopFront::corner(const Mesh& mesh, FaceId f, VertexId n) {
@@ -89,28 +94,39 @@ LoopFront::Corner LoopFront::corner(const Mesh& mesh, FaceId f, VertexId n) {
     return {n, {}, {}};
 }
 
-void LoopFront::set_idle(const Corner& corner) {
-    idle_[corner.node].push_back(edge_between(corner.previous, corner.next));
+bool LoopFront::is_switched(const Corner& corner) const {
+    const auto it = switched_.find(corner.node);
+    return it != switched_.end() &&
+           std::ranges::find(it->second, edge_between(corner.previous, corner.next)) !=
+               it->second.end();
 }
 
-void LoopFront::divide(const Corner& corner, VertexId end) {
-    if (!is_on(corner.node) || waits(corner)) return;
-    for (const VertexId neighbour : {corner.previous, corner.next})
-        if (const Corner part{corner.node, neighbour, end}; waits(part)) set_idle(part);
+bool LoopFront::waits(const Corner& corner) const {
+    if (!corner.next.is_valid() || !is_on(corner.node)) return false;
+    return is_joined(corner) == is_switched(corner);
 }
 
 bool LoopFront::waits(const Mesh& mesh, FaceId f, VertexId n) const {
     return is_on(n) && waits(corner(mesh, f, n));
 }
 
-bool LoopFront::waits(const Corner& corner) const {
-    const VertexId n = corner.node;
-    if (!corner.next.is_valid() || is_marked(n, corner.previous) || is_marked(n, corner.next))
-        return false;
-    const auto it = idle_.find(n);
-    return it == idle_.end() ||
-           std::ranges::find(it->second, edge_between(corner.previous, corner.next)) ==
-               it->second.end();
+void LoopFront::set_waiting(const Corner& corner, bool is_to_wait) {
+    if (waits(corner) == is_to_wait) return;
+    std::vector<Edge>& at_node = switched_[corner.node];
+    const Edge neighbours = edge_between(corner.previous, corner.next);
+    if (is_switched(corner))
+        std::erase(at_node, neighbours);
+    else
+        at_node.push_back(neighbours);
+    if (at_node.empty()) switched_.erase(corner.node);
+}
+
+void LoopFront::divide(const Corner& corner, VertexId end) {
+    if (!is_on(corner.node)) return;
+    const bool did_wait = waits(corner);
+    if (is_switched(corner)) set_waiting(corner, !did_wait);
+    for (const VertexId neighbour : {corner.previous, corner.next})
+        set_waiting({corner.node, neighbour, end}, did_wait);
 }
 
 bool LoopFront::is_cut_face(const Mesh& mesh, FaceId f) const {
@@ -135,15 +151,13 @@ bool LoopFront::is_on(const Mesh& mesh) const {
                   [&](VertexId n, const std::vector<VertexId>& others) {
                       return is_there(n) && std::ranges::all_of(others, is_there);
                   }) &&
-           all_of(idle_,
+           all_of(switched_,
                   [&](VertexId n, const std::vector<Edge>& neighbours) {
                       return is_there(n) && are_there(neighbours);
                   }) &&
-           all_of(open_,
-                  [&](CellId e, const std::vector<Edge>& edges) {
-                      return e.index() < mesh.element_capacity() && are_there(edges);
-                  }) &&
-           are_there(debts_);
+           all_of(open_, [&](CellId e, const std::vector<Edge>& edges) {
+               return e.index() < mesh.element_capacity() && are_there(edges);
+           });
 }
 
 /// Marked edges to other nodes on the cut stay: these do not wait in the faces there.
@@ -158,8 +172,8 @@ void LoopFront::forget(VertexId n) {
         }
         if (marked_[n].empty()) marked_.erase(n);
     }
-    idle_.erase(n);
-    std::erase_if(debts_, [&](const Edge& edge) { return edge.a == n || edge.b == n; });
+    switched_.erase(n);
+    std::erase_if(passed_, [&](const PassedEdge& edge) { return edge.node == n || edge.end == n; });
 }
 
 void LoopFront::apply(const Mesh& mesh, const ChangeSet& changes) {
@@ -202,12 +216,16 @@ void LoopFront::apply(const Mesh& mesh, const ChangeSet& changes) {
                 else
                     mark(a, b);
             }
-        const auto idle = std::exchange(idle_, {});
-        for (const auto& [n, corners] : idle)
+        const auto switched = std::exchange(switched_, {});
+        for (const auto& [n, corners] : switched)
             for (const Edge& neighbours : corners)
                 for (const VertexId x : all_of(n))
                     for (const VertexId a : all_of(neighbours.a))
-                        for (const VertexId b : all_of(neighbours.b)) set_idle({x, a, b});
+                        for (const VertexId b : all_of(neighbours.b))
+                            switched_[x].push_back(edge_between(a, b));
+        const auto passed = std::exchange(passed_, {});
+        for (const PassedEdge& edge : passed)
+            follow(edge.node, edge.end, [&](VertexId x, VertexId y) { toggle_passed({x, y}); });
         for (auto& [e, edges] : open_) {
             std::vector<Edge> now;
             for (const Edge& edge : edges)
@@ -216,9 +234,6 @@ void LoopFront::apply(const Mesh& mesh, const ChangeSet& changes) {
                         if (find_dart(mesh, e, x, y).is_valid()) now.push_back(edge_between(x, y));
             edges = std::move(now);
         }
-        const auto debts = std::exchange(debts_, {});
-        for (const Edge& edge : debts)
-            follow(edge.a, edge.b, [&](VertexId x, VertexId y) { toggle_debt(x, y); });
     }
     for (const topology::CellRecord& record : changes.elements_removed) open_.erase(record.id);
     for (const topology::VertexRecord& record : changes.nodes_removed) forget(record.id);
@@ -238,7 +253,11 @@ void LoopFront::leave_behind(const Mesh& mesh) {
         });
     };
     for (const auto& [n, node] : nodes_)
-        if (any_face_at(n, [&](FaceId f) { return waits(mesh, f, n); })) at_work.insert(n);
+        if (any_face_at(n, [&](FaceId f) {
+                const Corner at = corner(mesh, f, n);
+                return waits(at) && !is_joined(at);
+            }))
+            at_work.insert(n);
     // Cut faces at these nodes are known to be such while they have all their marked edges.
     std::unordered_set<VertexId> needed = at_work;
     for (const VertexId n : at_work)

@@ -21,9 +21,13 @@ namespace incise::cutting {
 /// edges of a cell form a closed path, a face along the path divides the cell, and they are open no
 /// more. All edges of such a face are marked.
 ///
-/// A node waits in a face if neither of its two edges of the face is marked, unless the cut is
-/// known not to enter the face there: the corner is then *idle*. A face that another cut divides
-/// has such corners, and so has a face that another cut makes beside this one.
+/// A node waits in a face if neither of its two edges of the face is marked. Some corners of faces
+/// are *switched*: there it is the other way round. A blade that passes an edge at a node of its
+/// own cut takes the cut to the other side of the edge, and switches the node's corners at it. A
+/// face that another cut divides has switched corners, as the cut enters one of its parts only.
+///
+/// In each cell a node has an even number of open edges and corners at which it waits: the cut
+/// goes into the cell as often as out of it.
 class LoopFront {
   public:
     struct Node {
@@ -57,24 +61,34 @@ class LoopFront {
         return it != marked_.end() ? it->second : none;
     }
 
-    /// An edge owes a crossing if the blade has passed it at a node of this cut, and made none of
-    /// its own there: the next crossing of the edge makes none either.
-    bool owes(VertexId a, VertexId b) const {
-        return std::ranges::find(debts_, edge_between(a, b)) != debts_.end();
-    }
-    void toggle_debt(VertexId a, VertexId b);
+    /// An edge that the blade has passed at its end `node`, which is on this cut, an odd number of
+    /// times. The next time it passes the edge it does so at this node again, wherever that is: so
+    /// a blade that goes back and comes again leaves all as it was.
+    struct PassedEdge {
+        VertexId node, end;
+        bool operator==(const PassedEdge&) const = default;
+        static void archive(auto& ar, auto& self) { ar(self.node, self.end); }
+    };
+    /// Returns the node at which the blade has passed an edge; an invalid id if at none.
+    VertexId passed_at(VertexId a, VertexId b) const;
+    void toggle_passed(const PassedEdge& edge);
 
     /// A node of a face, between its neighbours round the face.
     struct Corner {
         VertexId node, previous, next;
     };
     static Corner corner(const topology::Mesh& mesh, FaceId f, VertexId n);
-    /// Says that the cut does not enter the face at a corner.
-    void set_idle(const Corner& corner);
-    /// Follows the division of a face by an edge from a node of it to another one: a node that did
-    /// not wait in the face waits in none of its parts.
+    /// Says whether the node waits at a corner.
+    void set_waiting(const Corner& corner, bool waits);
+    /// Follows the division of a face by an edge from a node of it to another one. The node waits
+    /// in both parts as it did in the face.
     void divide(const Corner& corner, VertexId end);
 
+    bool waits(const Corner& corner) const;
+    /// True if an edge of the corner is marked.
+    bool is_joined(const Corner& corner) const {
+        return is_marked(corner.node, corner.previous) || is_marked(corner.node, corner.next);
+    }
     /// True if the node waits in the face: see above. @pre  it is a corner of the face
     bool waits(const topology::Mesh& mesh, FaceId f, VertexId n) const;
     /// True if all edges of the face are marked.
@@ -99,18 +113,18 @@ class LoopFront {
     void leave_behind(const topology::Mesh& mesh);
 
     static void archive(auto& ar, auto& self) {
-        ar(self.nodes_, self.marked_, self.idle_, self.open_, self.debts_);
+        ar(self.nodes_, self.marked_, self.switched_, self.open_, self.passed_);
     }
 
   private:
-    bool waits(const Corner& corner) const;
+    bool is_switched(const Corner& corner) const;
     void forget(VertexId n);
 
     std::unordered_map<VertexId, Node> nodes_;
     std::unordered_map<VertexId, std::vector<VertexId>> marked_;  // each edge in both directions
-    std::unordered_map<VertexId, std::vector<Edge>> idle_;        // the neighbours at idle corners
+    std::unordered_map<VertexId, std::vector<Edge>> switched_;    // the neighbours at the corners
     std::unordered_map<CellId, std::vector<Edge>> open_;
-    std::vector<Edge> debts_;  // in ascending order
+    std::vector<PassedEdge> passed_;
 };
 
 }  // namespace incise::cutting

@@ -17,14 +17,31 @@ using topology::Dart;
 /// one of the two new cells it then has an even number of edges and waiting corners at the node.
 void LoopStep::make_wait_in(LoopFront& front, FaceId f, std::span<const VertexId> path) {
     for (const VertexId n : path) {
-        if (!front.waits(mesh_, f, n)) continue;
+        if (!front.is_on(n)) continue;
         std::size_t count = 0;
         for (int k = 0; k < mesh_.num_faces(f.cell); ++k)
             if (k != f.face && front.waits(mesh_, {f.cell, k}, n)) ++count;
         for (const Edge& edge : front.open_edges(f.cell))
             if (edge.a == n || edge.b == n) ++count;
-        if (count % 2 == 0) front.set_idle(LoopFront::corner(mesh_, f, n));
+        front.set_waiting(LoopFront::corner(mesh_, f, n), count % 2 == 1);
     }
+}
+
+/// Where a cut has divided a face by the edges of a path, lets it wait in both parts if it is to
+/// cross the path again: its nodes do not lie exactly where the blade has been.
+void LoopStep::cross_again(LoopFront& front, CellId e, std::span<const VertexId> path) {
+    const Dart along = find_dart(mesh_, e, path[0], path[1]);
+    const FaceId parts[] = {along.face, opposite(mesh_, along).face};
+    for_cuts(nullptr, [&](const Cut& cut) {
+        if (&cut.front != &front) return;
+        const Half halves[] = {half_of(cut, parts[0]), half_of(cut, parts[1])};
+        if (halves[0].is_settled() || halves[1].is_settled()) return;
+        const auto x = halves[0].pierced ? halves[0].pierced : halves[1].pierced;
+        const auto distance = [&](VertexId n) { return x ? (now(cut, n) - *x).norm() : 0.0; };
+        const VertexId n =
+            distance(path.back()) < distance(path.front()) ? path.back() : path.front();
+        for (const FaceId part : parts) front.set_waiting(LoopFront::corner(mesh_, part, n), true);
+    });
 }
 
 /// Returns where a node is when the blade of the cut is where it is, m.
@@ -42,7 +59,7 @@ LoopStep::Half LoopStep::half_of(const Cut& cut, FaceId f) const {
             half.waiting.push_back(n);
             half.is_odd = !half.is_odd;
         }
-        if (cut.front.owes(n, next)) half.is_odd = !half.is_odd;
+        if (cut.front.passed_at(n, next).is_valid()) half.is_odd = !half.is_odd;
         if (cut.resting == nullptr)
             if (const auto it = pending_.find(edge_between(n, next)); it != pending_.end())
                 half.is_odd ^= it->second.size() % 2 == 1;
@@ -111,7 +128,7 @@ std::pair<std::size_t, double> LoopStep::passing_place(const Cut& cut,
 /// the path.
 /// @param is_one_of_many  the face has more than two parts: of those that the path divides, the
 ///                        one on its left is settled, as all before it
-void LoopStep::let_pass(const Cut& cut, CellId e, std::vector<VertexId>& path,
+void LoopStep::let_pass(const Cut& cut, CellId e, std::vector<VertexId>& path, Passed& passed,
                         bool is_one_of_many) {
     if (cut.front.is_empty() && cut.resting != nullptr) return;
     const Dart along = find_dart(mesh_, e, path[0], path[1]);
@@ -122,7 +139,7 @@ void LoopStep::let_pass(const Cut& cut, CellId e, std::vector<VertexId>& path,
             continue;
         const Half half = half_of(cut, faces[0]);
         const bool is_here = half.is_settled();
-        cut.front.set_idle(LoopFront::corner(mesh_, faces[is_here ? 1 : 0], end));
+        cut.front.set_waiting(LoopFront::corner(mesh_, faces[is_here ? 1 : 0], end), false);
     }
     const Half halves[] = {half_of(cut, faces[0]), half_of(cut, faces[1])};
     if (halves[0].is_settled() || (halves[1].is_settled() && !is_one_of_many)) return;
@@ -135,10 +152,24 @@ void LoopStep::let_pass(const Cut& cut, CellId e, std::vector<VertexId>& path,
         divide_edge(path[at], path[at + 1], std::clamp(place, least_place, 1.0 - least_place));
     path.insert(path.begin() + static_cast<std::ptrdiff_t>(at) + 1, middle);
     cut.front.put_on(middle, length);
-    if (cut.resting != nullptr || is_swept_)
-        join_at(cut.front, middle);
-    else
-        made_.push_back(middle);
+    passed.push_back({cut, middle});
+}
+
+/// Lets all cuts, or all but that of a front, pass a path. They join their nodes there once each of
+/// them has passed: what a cut does depends on where the others wait.
+void LoopStep::let_all_pass(const LoopFront* but, CellId e, std::vector<VertexId>& path) {
+    Passed passed;
+    for_cuts(but, [&](const Cut& cut) { let_pass(cut, e, path, passed); });
+    join(passed);
+}
+
+/// Joins the nodes that cuts have got where they pass a path.
+void LoopStep::join(const Passed& passed) {
+    for (const auto& [cut, n] : passed)
+        if (cut.resting != nullptr || is_swept_)
+            join_at(cut.front, n);
+        else
+            made_.push_back(n);
 }
 
 }  // namespace incise::cutting

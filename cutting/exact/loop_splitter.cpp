@@ -33,8 +33,12 @@ Split LoopStep::run() {
     if (pending_.empty()) return {};
     edit_.emplace(mesh_);
     divide_warped_faces();
+    passes_left_ = most_passes(crossed_.size());
     while (!queue_.empty()) divide_next();
-    if (!is_swept_) join_all();
+    if (is_swept_)
+        settle();
+    else
+        join_all();
     triangulate_all();
     open_faces();
     Split result{edit_->commit(), report_};
@@ -62,7 +66,6 @@ void LoopStep::find_crossed_edges() {
     std::vector<bool> is_crossed(edges.entries().size());
     for (std::size_t i = 0; i < edges.entries().size(); ++i) {
         const Edge& edge = edges.entries()[i].edge;
-        if (front_.is_marked(edge.a, edge.b)) continue;  // the cut comes back to itself
         EdgeIntersections passed =
             intersections_of(surface_, point(edge.a), point(edge.b), nearness);
         if (passed.empty()) continue;
@@ -101,14 +104,22 @@ void LoopStep::divide_warped_faces() {
     }
 }
 
-/// True if an intersection with an edge is at an end that is a node of this cut: the blade has come
-/// back to it, or has not left it yet.
-bool LoopStep::is_at_own_node(const Edge& edge, const EdgeIntersection& intersection) const {
+/// Returns the end of an edge, a node of this cut, at which the cut passes to the other side of the
+/// edge, if it is not to get a node there: the blade has come back to the node, or has not left it
+/// yet; or the edge lies on the cut, and the nodes at its ends not exactly where the blade is.
+std::optional<VertexId> LoopStep::own_node_at(const Edge& edge,
+                                              const EdgeIntersection& intersection) const {
+    if (const VertexId node = front_.passed_at(edge.a, edge.b); node.is_valid()) return node;
     const double length = rest_length(edge.a, edge.b);
-    const auto is_at = [&](VertexId end, double share) {
-        return front_.is_on(end) && share * length < nearness * front_.local_edge_length(end);
-    };
-    return is_at(edge.a, intersection.place) || is_at(edge.b, 1.0 - intersection.place);
+    std::array<std::pair<VertexId, double>, 2> ends{std::pair(edge.a, intersection.place),
+                                                    std::pair(edge.b, 1.0 - intersection.place)};
+    if (ends[1].second < ends[0].second) std::swap(ends[0], ends[1]);
+    const bool is_marked = front_.is_marked(edge.a, edge.b);
+    for (const auto& [end, share] : ends)
+        if (front_.is_on(end) &&
+            (is_marked || share * length < nearness * front_.local_edge_length(end)))
+            return end;
+    return std::nullopt;
 }
 
 void LoopStep::divide_next() {
@@ -121,19 +132,29 @@ void LoopStep::divide_next() {
     pending_.erase(found);
     const EdgeIntersection first = intersections.front();
     intersections.erase(intersections.begin());
-    if (front_.owes(edge.a, edge.b) || is_at_own_node(edge, first)) {
-        front_.toggle_debt(edge.a, edge.b);
+    if (const auto node = own_node_at(edge, first)) {
         receive(edge, std::move(intersections));
+        front_.toggle_passed({*node, *node == edge.a ? edge.b : edge.a});
         return;
     }
+    if (!intersections.empty()) pending_.emplace(edge, std::move(intersections));
     const double place = std::clamp(first.place, least_place, 1.0 - least_place);
     const double length = rest_length(edge.a, edge.b);
     const VertexId middle = divide_edge(edge.a, edge.b, place);
     ++report_.edges_divided;
     front_.put_on(middle, length);
     made_.push_back(middle);
+    if (is_swept_) join_at(front_, middle);
+}
+
+/// Follows the division of an edge: the intersections that are still to come are with its halves.
+void LoopStep::divide_pending(const Edge& edge, VertexId middle, double place) {
+    const auto found = pending_.find(edge);
+    if (found == pending_.end()) return;
+    const EdgeIntersections intersections = std::move(found->second);
+    pending_.erase(found);
     EdgeIntersections to_a, to_b;
-    for (EdgeIntersection& later : intersections) {
+    for (EdgeIntersection later : intersections) {
         const double at = later.place;
         // The lower id is the first end: the middle is the second one of both halves.
         if (at < place) {
@@ -146,7 +167,6 @@ void LoopStep::divide_next() {
     }
     receive({edge.a, middle}, std::move(to_a));
     receive({edge.b, middle}, std::move(to_b));
-    if (is_swept_) join_at(front_, middle);
 }
 
 Split split_cells(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,

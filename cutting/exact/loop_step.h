@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cassert>
-#include <limits>
 #include <optional>
 #include <queue>
 #include <span>
@@ -15,6 +14,7 @@
 #include "incise/cutting/exact/edge_list.h"
 #include "incise/cutting/exact/loop_splitter.h"
 #include "incise/cutting/exact/turn.h"
+#include "incise/topology/darts.h"
 #include "incise/topology/mesh_edit.h"
 
 namespace incise::cutting {
@@ -86,11 +86,14 @@ class LoopStep {
     // What the surface crosses: loop_splitter.cpp.
     void find_crossed_edges();
     void receive(const Edge& edge, EdgeIntersections intersections);
+    void divide_pending(const Edge& edge, VertexId middle, double place);
     void divide_warped_faces();
     void divide_next();
-    bool is_at_own_node(const Edge& edge, const EdgeIntersection& intersection) const;
+    std::optional<VertexId> own_node_at(const Edge& edge,
+                                        const EdgeIntersection& intersection) const;
 
     // How edges, faces and cells are divided and opened: loop_division.cpp.
+    void pass_at(VertexId v, VertexId end);
     VertexId divide_edge(VertexId a, VertexId b, double place);
     void note_rings(VertexId middle, VertexId a, std::span<const CellId> cells);
     std::vector<CellId> star(VertexId v) const;
@@ -98,10 +101,15 @@ class LoopStep {
     std::optional<VertexId> waiting_partner(const LoopFront& front, FaceId f, VertexId v) const;
     void join_at(LoopFront& front, VertexId v);
     void join_all();
+    void settle();
+    std::optional<LoopFront::PassedEdge> edge_to_pass(FaceId f) const;
     void join(LoopFront& front, FaceId f, VertexId v, VertexId w);
     std::vector<LoopFront*> cuts_with(FaceId f);
     std::vector<VertexId> divide_face(FaceId f, VertexId v, VertexId w);
     std::vector<VertexId> path_from(const LoopFront& front, CellId e, VertexId v, VertexId w) const;
+    VertexId turn(const LoopFront& front, topology::Dart arriving, bool is_left) const;
+    bool parts_evenly(const LoopFront& front, CellId e, VertexId from, VertexId n,
+                      VertexId to) const;
     void close(LoopFront& front, CellId e, VertexId v, VertexId w);
     void divide_at_centre(FaceId f);
     void triangulate_all();
@@ -111,8 +119,12 @@ class LoopStep {
     void make_wait_in(LoopFront& front, FaceId f, std::span<const VertexId> path);
     Vec3 now(const Cut& cut, VertexId n) const;
     Half half_of(const Cut& cut, FaceId f) const;
-    void let_pass(const Cut& cut, CellId e, std::vector<VertexId>& path,
+    void cross_again(LoopFront& front, CellId e, std::span<const VertexId> path);
+    using Passed = std::vector<std::pair<Cut, VertexId>>;
+    void let_pass(const Cut& cut, CellId e, std::vector<VertexId>& path, Passed& passed,
                   bool is_one_of_many = false);
+    void let_all_pass(const LoopFront* but, CellId e, std::vector<VertexId>& path);
+    void join(const Passed& passed);
     bool receive_later(std::span<const VertexId> path);
     std::pair<std::size_t, double> passing_place(const Cut& cut, std::span<const VertexId> path,
                                                  std::span<const Half, 2> halves) const;
@@ -137,7 +149,8 @@ class LoopStep {
     std::vector<CellId> divided_;  // cells at divided edges and faces, and parts of such
     /// Nodes that cuts may still get on new edges. No step needs as many: the bound is there so
     /// that a contradiction, as rounding could make it, ends.
-    std::size_t passes_left_ = std::numeric_limits<std::size_t>::max();
+    std::size_t passes_left_ = 0;
+    static std::size_t most_passes(std::size_t num_cells) { return 64 + 16 * num_cells; }
     SplitReport report_;
 };
 

@@ -21,13 +21,20 @@ bool have_edge(const Mesh& mesh, FaceId f, VertexId a, VertexId b) {
 
 }  // namespace
 
-std::optional<std::pair<VertexId, VertexId>> next_ear(const Mesh& mesh, FaceId face) {
+std::optional<std::pair<VertexId, VertexId>> next_ear(const Mesh& mesh, FaceId face,
+                                                      const std::function<bool(VertexId)>& waits) {
     const topology::Ears ears(mesh, face);
-    const auto best = ears.best(
-        [&](VertexId before, VertexId after) { return !have_edge(mesh, face, before, after); });
     constexpr double flat = 1e-12;  // by rounding: corners on a line
-    if (!best || std::abs(ears.quality_of(*best)) < flat) return std::nullopt;
-    return std::pair(ears.corner(*best + 1), ears.corner(*best + ears.size() - 1));
+    for (const bool may_wait : {false, true}) {
+        const auto best = ears.best([&](VertexId before, VertexId corner, VertexId after) {
+            return (may_wait || !waits(corner)) && !have_edge(mesh, face, before, after);
+        });
+        if (!best) continue;
+        const double quality = ears.quality_of(*best);
+        if (may_wait ? std::abs(quality) < flat : quality < flat) continue;
+        return std::pair(ears.corner(*best + 1), ears.corner(*best + ears.size() - 1));
+    }
+    return std::nullopt;
 }
 
 }  // namespace incise::cutting

@@ -454,5 +454,46 @@ TEST(LoopSplitter, PartsABodyAlongThePathsOfSeveralBladesAtATime) {
                 false);
 }
 
+/// Their planes go through nodes of the mesh, and they stop in each other's planes.
+TEST(LoopSplitter, PartsABodyAlongLatticePlanesOfTwoBladesAtATime) {
+    for_bodies(
+        12, 4,
+        [](Body& whole, Random& random) {
+            CutBody body(whole.data);
+            std::vector<Divider> planes;
+            do {
+                planes.clear();
+                while (planes.size() < 2) {
+                    const Vec3 normal = random.grid_point(3) - Vec3::Ones(),
+                               point = 0.25 * (random.grid_point(3) + Vec3::Ones());
+                    if (normal.norm() > 0.0) planes.push_back({point, normal.normalized()});
+                }
+            } while (exact_volumes(planes).front() < 2e-3);
+            std::vector<CutId> cuts;
+            for (std::size_t k = 0; k < planes.size(); ++k)
+                cuts.push_back(body.cutter.begin_cut(default_snap));
+            constexpr int num_steps = 8;
+            for (int i = 0; i < num_steps; ++i) {
+                body.cutter.follow_motion(body.mesh, body.positions);
+                for (std::size_t k = 0; k < planes.size(); ++k) {
+                    const StraightPath path(planes[k]);
+                    body.follow(body.cutter.split(cuts[k], body.mesh,
+                                                  path.edge(-2.0 + 4.0 * i / num_steps),
+                                                  path.edge(-2.0 + 4.0 * (i + 1) / num_steps)));
+                }
+                for (const CutId cut : cuts)
+                    EXPECT_TRUE(body.cutter.contradictory_faces(cut, body.mesh).empty());
+            }
+            const auto volumes = body.rest_volumes(), expected = exact_volumes(planes);
+            EXPECT_NEAR(Body::sum(volumes), body.volume_before, 1e-13);
+            std::vector<double> large;  // but for what is between a plane and the nodes beside it
+            for (const double v : volumes)
+                if (v > 1.5e-3) large.push_back(v);
+            ASSERT_EQ(large.size(), expected.size());
+            for (std::size_t i = 0; i < large.size(); ++i) EXPECT_NEAR(large[i], expected[i], 2e-2);
+        },
+        false);
+}
+
 }  // namespace
 }  // namespace incise::cutting
