@@ -11,7 +11,6 @@
 namespace incise::cutting {
 
 using topology::Dart;
-using topology::Mesh;
 
 /// Takes this cut, which goes through a node, to the other side of an edge there.
 void LoopStep::pass_at(VertexId v, VertexId end) {
@@ -111,11 +110,10 @@ std::optional<VertexId> LoopStep::waiting_partner(const LoopFront& front, FaceId
 /// Where a node waits in a face, and only an edge that the blade has passed at another node of the
 /// cut can be where the cut leaves the face again, takes the cut to the other side of that edge.
 void LoopStep::settle() {
-    std::vector<VertexId> nodes = made_;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (const VertexId v : std::vector(made_))
         for (bool is_done = false; !is_done;) {
             is_done = true;
-            for (const FaceId f : faces_at(nodes[i])) {
+            for (const FaceId f : faces_at(v)) {
                 const auto edge = edge_to_pass(f);
                 if (!edge) continue;
                 front_.toggle_passed(*edge);
@@ -234,6 +232,7 @@ std::vector<VertexId> LoopStep::divide_face(FaceId f, VertexId v, VertexId w) {
         const VertexId middle = edit_->divide_face_beside(f, v, w);
         std::vector<std::pair<VertexId, double>> sources;
         const topology::VertexRecord& record = edit_->added(middle);
+        sources.reserve(static_cast<std::size_t>(record.num_sources));
         for (int k = 0; k < record.num_sources; ++k)
             sources.emplace_back(record.sources[static_cast<std::size_t>(k)].node,
                                  record.sources[static_cast<std::size_t>(k)].weight);
@@ -400,7 +399,8 @@ void LoopStep::triangulate_all() {
         return mesh_.face_size(f) == 3 || !mesh_.neighbor(f).is_valid() || cuts_with(f).empty();
     };
     passes_left_ = most_passes(divided_.size());
-    for (std::size_t i = 0; i < divided_.size(); ++i) {  // more are added
+    // NOLINTNEXTLINE(modernize-loop-convert): the list grows in the loop
+    for (std::size_t i = 0; i < divided_.size(); ++i) {
         const CellId e = divided_[i];
         for (int f = 0; f < mesh_.num_faces(e); ++f)
             while (!is_done({e, f})) {
