@@ -124,7 +124,7 @@ std::vector<Vec3> Cutter::shifted(std::size_t cut, std::vector<Vec3> edge) const
     const Vec3 ratio(0.819172513, 0.671043607, 0.549700478);
     Vec3 direction;
     for (int c = 0; c < 3; ++c) {
-        double whole;
+        double whole = 0.0;
         direction[c] = 0.5 + 0.5 * std::modf(static_cast<double>(cut + 1) * ratio[c], &whole);
     }
     for (Vec3& x : edge) x += shift_ * direction;

@@ -252,12 +252,14 @@ void LoopFront::leave_behind(const Mesh& mesh) {
             return false;
         });
     };
-    for (const auto& [n, node] : nodes_)
+    for (const auto& entry : nodes_) {
+        const VertexId n = entry.first;
         if (any_face_at(n, [&](FaceId f) {
                 const Corner at = corner(mesh, f, n);
                 return waits(at) && !is_joined(at);
             }))
             at_work.insert(n);
+    }
     // Cut faces at these nodes are known to be such while they have all their marked edges.
     std::unordered_set<VertexId> needed = at_work;
     for (const VertexId n : at_work)
