@@ -9,7 +9,6 @@
 namespace incise::cutting {
 
 using topology::ChangeSet;
-using topology::Dart;
 using topology::Mesh;
 
 namespace {
