@@ -14,8 +14,7 @@ using topology::Dart;
 
 /// Takes this cut, which goes through a node, to the other side of an edge there.
 void LoopStep::pass_at(VertexId v, VertexId end) {
-    std::vector<VertexId>
-        others;  // of the corners: those of several faces have the same neighbours
+    std::vector<VertexId> others;  // so that a corner of several faces is switched once
     for (const FaceId f : faces_at(v)) {
         const LoopFront::Corner corner = LoopFront::corner(mesh_, f, v);
         if (corner.previous != end && corner.next != end) continue;
@@ -125,22 +124,23 @@ void LoopStep::settle() {
         }
 }
 
+/// Returns the edge of a face to whose other side the cut is to go, so that it leaves the face
+/// where the one node that waits there has no partner; nothing if there is no such node or edge.
 std::optional<LoopFront::PassedEdge> LoopStep::edge_to_pass(FaceId f) const {
-    int num_free = 0;
+    int num_waiting = 0;
     std::optional<LoopFront::PassedEdge> found;
     bool is_odd = false;
     const int size = mesh_.face_size(f);
     for (int p = 0; p < size; ++p) {
         const VertexId n = mesh_.face_corner(f, p), after = mesh_.face_corner(f, (p + 1) % size);
-        const LoopFront::Corner corner = LoopFront::corner(mesh_, f, n);
-        if (front_.waits(corner)) ++num_free;
+        if (front_.waits(mesh_, f, n)) ++num_waiting;
         const VertexId node = front_.passed_at(n, after);
         if (!node.is_valid()) continue;
         is_odd = !is_odd;
         if (!found && !front_.waits(mesh_, f, node))
             found = LoopFront::PassedEdge{node, node == n ? after : n};
     }
-    if (num_free != 1 || !is_odd) return std::nullopt;
+    if (num_waiting != 1 || !is_odd) return std::nullopt;
     return found;
 }
 

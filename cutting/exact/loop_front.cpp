@@ -154,8 +154,12 @@ bool LoopFront::is_on(const Mesh& mesh) const {
                   [&](VertexId n, const std::vector<Edge>& neighbours) {
                       return is_there(n) && are_there(neighbours);
                   }) &&
-           all_of(open_, [&](CellId e, const std::vector<Edge>& edges) {
-               return e.index() < mesh.element_capacity() && are_there(edges);
+           all_of(open_,
+                  [&](CellId e, const std::vector<Edge>& edges) {
+                      return e.index() < mesh.element_capacity() && are_there(edges);
+                  }) &&
+           std::ranges::all_of(passed_, [&](const PassedEdge& edge) {
+               return is_there(edge.node) && is_there(edge.end);
            });
 }
 

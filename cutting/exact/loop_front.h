@@ -22,9 +22,9 @@ namespace incise::cutting {
 /// more. All edges of such a face are marked.
 ///
 /// A node waits in a face if neither of its two edges of the face is marked. Some corners of faces
-/// are *switched*: there it is the other way round. A blade that passes an edge at a node of its
-/// own cut takes the cut to the other side of the edge, and switches the node's corners at it. A
-/// face that another cut divides has switched corners, as the cut enters one of its parts only.
+/// are *switched*: there it is the other way round. A face that another cut divides has such
+/// corners, as the cut enters one of its parts only. So has a face that the cut is to cross again
+/// beside one of its own edges.
 ///
 /// In each cell a node has an even number of open edges and corners at which it waits: the cut
 /// goes into the cell as often as out of it.
