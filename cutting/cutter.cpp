@@ -114,12 +114,13 @@ const Cutter::Cut& Cutter::cut_of(CutId id) const {
 
 Cutter::Cut& Cutter::cut_of(CutId id) { return const_cast<Cut&>(std::as_const(*this).cut_of(id)); }
 
-/// Returns the edge of the blade of a cut a little to one side. A blade often stops exactly on
-/// nodes, edges and faces of a mesh, where rounding would decide what it has crossed: nodes that a
-/// cut has made lie off their edges by rounding. The directions have no simple ratios to those of a
-/// mesh. Each cut has its own, as blades also stop exactly in each other's planes.
-std::vector<Vec3> Cutter::shifted(std::size_t cut, std::vector<Vec3> edge) const {
-    if (!has_loops_) return edge;
+/// Returns by how much the edge of the blade of a cut is taken to be to one side, m. A blade often
+/// stops exactly on nodes, edges and faces of a mesh, where rounding would decide what it has
+/// crossed: nodes that a cut has made lie off their edges by rounding. The directions have no
+/// simple ratios to those of a mesh. Each cut has its own, as blades also stop exactly in each
+/// other's planes.
+Vec3 Cutter::shift_of(std::size_t cut) const {
+    if (!has_loops_) return Vec3::Zero();
     // Shares of 1 that never come close to each other as the number of the cut grows.
     const Vec3 ratio(0.819172513, 0.671043607, 0.549700478);
     Vec3 direction;
@@ -127,7 +128,13 @@ std::vector<Vec3> Cutter::shifted(std::size_t cut, std::vector<Vec3> edge) const
         double whole = 0.0;
         direction[c] = 0.5 + 0.5 * std::modf(static_cast<double>(cut + 1) * ratio[c], &whole);
     }
-    for (Vec3& x : edge) x += shift_ * direction;
+    return shift_ * direction;
+}
+
+std::vector<Vec3> Cutter::shifted(std::size_t cut, std::vector<Vec3> edge) const {
+    if (!has_loops_) return edge;
+    const Vec3 shift = shift_of(cut);
+    for (Vec3& x : edge) x += shift;
     return edge;
 }
 
@@ -176,13 +183,15 @@ Split Cutter::split(CutId id, Mesh& mesh, const std::vector<Vec3>& edge_before,
 Split Cutter::end_cut(CutId id, Mesh& mesh, const fragments::FragmentMesh& fragments,
                       const BladeEnd& blade) {
     Cut& cut = cut_of(id);
-    if (has_loops_) {
-        cut.loops = {};
-        return {};
-    }
-    auto resting = suspended_cuts(id.index, &Cut::front);
     TissueMotion tissue = motion(mesh);
     tissue.before = tissue.after;  // it rests
+    if (has_loops_) {
+        auto resting = suspended_cuts(id.index, &Cut::loops);
+        return noted(finish_cells(mesh, fragments, tissue, blade.moved_by(shift_of(id.index)),
+                                  cut.loops, resting),
+                     id.index);
+    }
+    auto resting = suspended_cuts(id.index, &Cut::front);
     return noted(
         finish(mesh, fragments, tissue, blade, cut.front, {cut.snap}, snap_history_, resting),
         id.index);

@@ -83,10 +83,9 @@ class Cutter {
         return !cut_of(cut).front.is_empty() || !cut_of(cut).loops.is_empty();
     }
     /// Ends a cut at the present edge of its blade, in tissue at rest. split() can begin the same
-    /// cut again. Where cells are not all tetrahedra, those that the cut has not crossed stay
-    /// whole.
+    /// cut again.
     /// @param fragments  of the mesh
-    /// Throws InputError for an unknown cut. Cost: see cutting::finish.
+    /// Throws InputError for an unknown cut. Cost: see cutting::finish and cutting::finish_cells.
     Split end_cut(CutId cut, topology::Mesh& mesh, const fragments::FragmentMesh& fragments,
                   const BladeEnd& blade);
     /// Removes a cut. Its number may be given to a later cut. Throws InputError for an unknown cut.
@@ -156,6 +155,7 @@ class Cutter {
 
     Cut& cut_of(CutId id);
     const Cut& cut_of(CutId id) const;
+    Vec3 shift_of(std::size_t cut) const;
     std::vector<Vec3> shifted(std::size_t cut, std::vector<Vec3> edge) const;
     /// Returns the other cuts in progress, whose fronts an edit by cut `worker` may touch.
     template <class Front>

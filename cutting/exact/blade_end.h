@@ -18,6 +18,12 @@ class BladeEnd {
     BladeEnd(std::vector<Vec3> edge, const std::vector<Vec3>& motion);
 
     const std::vector<Vec3>& edge() const { return edge_; }
+    /// Returns the same blade at a place that is farther by `offset`, m.
+    BladeEnd moved_by(const Vec3& offset) const {
+        BladeEnd moved = *this;
+        for (Vec3& x : moved.edge_) x += offset;
+        return moved;
+    }
 
     /// Returns how far a point is ahead of the edge, m; negative behind it.
     double distance_ahead(const Vec3& x) const;

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <set>
 
+#include "incise/cutting/exact/blade_stop.h"
+
 namespace incise::cutting {
 
 using topology::Mesh;
@@ -15,30 +17,6 @@ namespace {
 /// The precision of intersections with the blade's edge, as a share of the edge of the mesh.
 constexpr double rounding_of_places = 1e-9;
 constexpr int max_bisections = 50;
-
-/// The nodes of the front within this many edge lengths of the blade's edge show whether the cut is
-/// behind the blade. If the blade's motion has made the cut, not that of the tissue, the mean
-/// cosine of the nodes' directions with the direction backward is above the second number.
-constexpr double size_of_neighbourhood = 3.0, least_share_behind = 0.3;
-
-/// How much farther than to the end of an element a blade is taken to go on, in units of the
-/// element's size. If it went to just that end, rounding or the shift of exact signs would decide.
-constexpr double room_ahead = 1e-3;
-
-/// Returns the elements of the same carrier that hang together with an element inside it, this one
-/// first.
-template <class CarrierOf>
-std::vector<CellId> part_of_carrier(const Mesh& mesh, CellId e, CarrierOf carrier_of) {
-    std::vector<CellId> part{e};
-    for (std::size_t next = 0; next < part.size(); ++next)
-        for (int f = 0; f < mesh.num_faces(part[next]); ++f) {
-            const CellId other = mesh.neighbor({part[next], f}).cell;
-            if (other.is_valid() && carrier_of(other) == carrier_of(e) &&
-                std::ranges::find(part, other) == part.end())
-                part.push_back(other);
-        }
-    return part;
-}
 
 /// Returns the area of one side of the faces inside a part of a carrier that are open, at rest, m2.
 double opened_area(const Mesh& mesh, std::span<const CellId> part) {
@@ -151,60 +129,6 @@ std::vector<FaceId> CutEnd::faces_to_open(std::span<const FaceId> faces) const {
         return section && section->behind >= (1.0 - rounding_of_places) * section->ahead;
     });
     return chosen;
-}
-
-BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const CutFront& front,
-                       const PositionOf& position) {
-    // Sorted, so that the sums do not depend on the history of the front.
-    std::vector<VertexId> nodes;
-    front.for_each([&](VertexId n) {
-        if (mesh.is_alive(n)) nodes.push_back(n);
-    });
-    std::sort(nodes.begin(), nodes.end());
-    Vec3 from_cut = Vec3::Zero();
-    double share_behind = 0.0, count = 0.0;
-    for (const VertexId n : nodes) {
-        const Vec3 away = blade.away_from_edge(position(n));
-        const double distance = away.norm();
-        if (!(distance > 0.0 && distance < size_of_neighbourhood * front.local_edge_length(n)))
-            continue;
-        from_cut -= away / distance;
-        share_behind -= blade.distance_ahead(position(n)) / distance;
-        ++count;
-    }
-    if (count == 0.0 || share_behind > least_share_behind * count) return blade;
-    return {blade.edge(), std::vector<Vec3>(blade.edge().size(), from_cut / count)};
-}
-
-double exit_distance(const TissueMotion& tissue, const fragments::FragmentMesh& fragments,
-                     const BladeEnd& blade) {
-    const Mesh& mesh = tissue.mesh;
-    const auto carrier_of = [&](CellId e) { return fragments.carrier_of_cell(e); };
-    const SweptEdge edge(blade.edge(), blade.edge());
-    double farthest = 0.0;
-    tissue.for_each_near(
-        [&](const Box& box) { return edge.may_meet(box); },
-        [&](CellId e) {
-            if (mesh.kind(e) != topology::CellKind::tetrahedron) return;
-            bool has_edge = false;
-            for (int f = 0; f < 4 && !has_edge; ++f) {
-                std::array<MovingPoint, 3> points;
-                for (int p = 0; p < 3; ++p) {
-                    const Vec3& x = tissue.after[mesh.face_corner({e, f}, p).index()];
-                    points[static_cast<std::size_t>(p)] = {x, x};
-                }
-                has_edge = *edge.ends_inside(points);
-            }
-            if (!has_edge) return;
-            // The edge may be in the hindmost face of the element, or in the foremost.
-            const double more = room_ahead * tissue.box(e).diagonal().norm();
-            for (const CellId other : part_of_carrier(mesh, e, carrier_of))
-                for (const VertexId n : mesh.corners(other))
-                    farthest = std::max(
-                        farthest,
-                        more + std::max(0.0, blade.distance_ahead(tissue.after[n.index()])));
-        });
-    return farthest;
 }
 
 }  // namespace incise::cutting

@@ -80,15 +80,4 @@ class CutEnd {
     std::unordered_set<VertexId> nodes_;                  // that count as at the blade's edge
 };
 
-/// Returns the same blade if its cut is behind it, else one that goes on away from its cut. A blade
-/// may also cut because the tissue moves, and its own motion then does not give the direction.
-BladeEnd away_from_cut(const BladeEnd& blade, const topology::Mesh& mesh, const CutFront& front,
-                       const PositionOf& position);
-
-/// Returns how far the edge must go on to be past all carriers that it is in, m. Returns 0 if it is
-/// in none. Only tetrahedra count. An edge in the face between two elements counts as in one of
-/// them (space_time.h).
-double exit_distance(const TissueMotion& tissue, const fragments::FragmentMesh& fragments,
-                     const BladeEnd& blade);
-
 }  // namespace incise::cutting

@@ -332,9 +332,11 @@ bool LoopStep::parts_evenly(const LoopFront& front, CellId e, VertexId from_node
 void LoopStep::close(LoopFront& front, CellId e, VertexId v, VertexId w) {
     if (std::ranges::find(front.open_edges(e), edge_between(v, w)) == front.open_edges(e).end())
         return;
+    if (&front == &front_ && stays_whole(e)) return;
     const std::vector<VertexId> path = path_from(front, e, v, w);
     if (path.empty()) return;
     const CellId added = edit_->divide_cell(e, path);
+    if (only_ && !stays_whole(e)) only_->insert(added);
     divided_.insert(divided_.end(), {e, added});
     for (auto& [n, begins] : rings_)
         for (CellId& begin : begins)

@@ -43,6 +43,11 @@ class LoopFront {
         const auto it = nodes_.find(n);
         return it != nodes_.end() ? it->second.local_edge_length : 0.0;
     }
+    /// Passes each node that is on the cut, in no particular order.
+    template <class Visit>
+    void for_each(Visit visit) const {
+        for (const auto& entry : nodes_) visit(entry.first);
+    }
     bool is_empty() const { return nodes_.empty(); }
     std::size_t size() const { return nodes_.size(); }
 

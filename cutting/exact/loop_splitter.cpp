@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "incise/cutting/exact/blade_stop.h"
 #include "incise/cutting/exact/loop_step.h"
 #include "incise/topology/darts.h"
 
@@ -53,6 +54,7 @@ void LoopStep::find_crossed_edges() {
     std::vector<MovingPoint> points;
     const auto may_meet = [&](const Box& box) { return surface_.may_meet(box); };
     tissue_.for_each_near(may_meet, [&](CellId e) {
+        if (stays_whole(e)) return;
         points.clear();
         for (const VertexId n : mesh_.corners(e)) points.push_back(point(n));
         if (!surface_.may_meet_hull(points)) return;
@@ -172,6 +174,18 @@ void LoopStep::divide_pending(const Edge& edge, VertexId middle, double place) {
 Split split_cells(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
                   LoopFront& front, std::span<SuspendedLoops> resting) {
     return LoopStep(mesh, tissue, surface, front, resting).run();
+}
+
+Split finish_cells(Mesh& mesh, const fragments::FragmentMesh& fragments, const TissueMotion& tissue,
+                   const BladeEnd& blade, LoopFront& front, std::span<SuspendedLoops> resting) {
+    if (front.is_empty()) return {};
+    const BladeEnd end = away_from_cut(blade, nodes_of(front, mesh, tissue.after));
+    const BladePlace place = place_of(end, tissue, fragments);
+    Split result = LoopStep(mesh, tissue, end.continuation(place.exit_distance), front, resting,
+                            cells_to_part(end, place, mesh, tissue.after, front))
+                       .run();
+    front = {};
+    return result;
 }
 
 }  // namespace incise::cutting

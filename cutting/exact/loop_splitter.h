@@ -1,14 +1,17 @@
 // The exact cut through cells of any shape: it divides them along a surface and separates the
-// parts. See docs/cutting.md, Cells of any shape. SPDX-License-Identifier: LGPL-3.0-or-later
+// parts. See docs/cutting.md, Cells of any shape.
+// SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <span>
 
+#include "incise/cutting/exact/blade_end.h"
 #include "incise/cutting/exact/loop_front.h"
 #include "incise/cutting/exact/split.h"
 #include "incise/cutting/exact/suspended_cut.h"
 #include "incise/cutting/surfaces/cut_surface.h"
 #include "incise/cutting/surfaces/tissue_motion.h"
+#include "incise/fragments/fragment_mesh.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::cutting {
@@ -27,5 +30,15 @@ using SuspendedLoops = SuspendedCutOf<LoopFront>;
 /// Cost: some microseconds a crossed cell, and the search for them.
 Split split_cells(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
                   LoopFront& front, std::span<SuspendedLoops> resting);
+
+/// Ends a cut at a blade that has stopped, in tissue at rest, and forgets it. A carrier that is cut
+/// in part moves as if it were whole: so those through whose section the blade has passed by half
+/// or more are parted along the straight continuation of its path, and the others stay whole.
+/// Returns the edit, which may be empty.
+/// @param fragments  of the mesh
+/// Cost: as split_cells(), and the search for the cells at the blade's edge.
+Split finish_cells(topology::Mesh& mesh, const fragments::FragmentMesh& fragments,
+                   const TissueMotion& tissue, const BladeEnd& blade, LoopFront& front,
+                   std::span<SuspendedLoops> resting);
 
 }  // namespace incise::cutting

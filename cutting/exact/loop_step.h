@@ -7,6 +7,7 @@
 #include <queue>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -23,12 +24,14 @@ namespace incise::cutting {
 class LoopStep {
   public:
     LoopStep(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
-             LoopFront& front, std::span<SuspendedLoops> resting)
+             LoopFront& front, std::span<SuspendedLoops> resting,
+             std::optional<std::unordered_set<CellId>> only = std::nullopt)
         : mesh_(mesh),
           tissue_(tissue),
           surface_(surface),
           front_(front),
           resting_(resting),
+          only_(std::move(only)),
           is_swept_(surface.is_swept()),
           num_old_nodes_(mesh.node_capacity()) {}
 
@@ -46,6 +49,7 @@ class LoopStep {
             return {tissue_.before[n.index()], tissue_.after[n.index()]};
         return new_points_[n.index() - num_old_nodes_];
     }
+    bool stays_whole(CellId e) const { return only_ && !only_->contains(e); }
     double rest_length(VertexId a, VertexId b) const {
         return (mesh_.rest_position(b) - mesh_.rest_position(a)).norm();
     }
@@ -134,6 +138,7 @@ class LoopStep {
     const CutSurface& surface_;
     LoopFront& front_;
     const std::span<SuspendedLoops> resting_;
+    std::optional<std::unordered_set<CellId>> only_;  // if set, this cut leaves other cells whole
     const bool is_swept_;
     double time_ = 0.0;  // of the intersection that is the last one so far
     const std::size_t num_old_nodes_;

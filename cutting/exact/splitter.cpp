@@ -14,6 +14,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "incise/cutting/exact/blade_stop.h"
 #include "incise/cutting/exact/creases.h"
 #include "incise/cutting/exact/crossing_counts.h"
 #include "incise/cutting/exact/cut_end.h"
@@ -529,11 +530,11 @@ Split finish(Mesh& mesh, const fragments::FragmentMesh& fragments, const TissueM
              const BladeEnd& blade, CutFront& front, const SplitOptions& options,
              SnapHistory& snap_history, std::span<SuspendedCut> resting) {
     if (front.is_empty()) return {};
-    const BladeEnd end =
-        away_from_cut(blade, mesh, front, [&](VertexId n) { return tissue.after[n.index()]; });
+    const BladeEnd end = away_from_cut(blade, nodes_of(front, mesh, tissue.after));
     const PathEnd path_end{end, fragments};
-    Split result = Splitter(mesh, tissue, end.continuation(exit_distance(tissue, fragments, end)),
-                            front, options, snap_history, resting, &path_end)
+    const double distance = place_of(end, tissue, fragments).exit_distance;
+    Split result = Splitter(mesh, tissue, end.continuation(distance), front, options, snap_history,
+                            resting, &path_end)
                        .run();
     front = {};
     return result;

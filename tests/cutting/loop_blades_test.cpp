@@ -1,0 +1,297 @@
+// Cuts of blades through cells of any shape, with a cutter: that stop and go on, are withdrawn,
+// come again, and meet each other. SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "incise/fragments/fragment_mesh.h"
+#include "incise/topology/darts.h"
+#include "loop_body.h"
+#include "support/plane_section.h"
+
+namespace incise::cutting {
+namespace {
+
+TEST(LoopSplitter, CutsNothingMoreAtTheSamePlace) {
+    for_bodies(
+        3, 4,
+        [](Body& whole, Random& random) {
+            CutBody body(whole.data);
+            const auto planes = random_planes(random, 1);
+            std::size_t num_cells = 0;
+            for (int pass = 0; pass < 6; ++pass) {
+                const StraightPath path(planes[0], 0.3 * pass);
+                const CutId cut = body.cutter.begin_cut(default_snap);
+                body.lead(cut, path, -2.0, 2.0, 5 + 3 * pass);
+                EXPECT_FALSE(body.cutter.is_in_tissue(cut));
+                body.cutter.remove_cut(cut);
+                if (pass == 0) num_cells = body.mesh.num_elements();
+                EXPECT_EQ(body.mesh.num_elements(), num_cells) << "pass " << pass;
+            }
+            body.cut_along(Plane(planes[0].point, planes[0].normal));
+            EXPECT_EQ(body.mesh.num_elements(), num_cells);
+            expect_parts(body, planes, 3e-3);
+        },
+        false);
+}
+
+/// Also in the same step, before the tissue has moved.
+TEST(LoopSplitter, CutsNothingMoreAlongTheSamePlane) {
+    for (const bool has_steps : {true, false})
+        for_bodies(
+            4, 4,
+            [&](Body& whole, Random& random) {
+                CutBody body(whole.data);
+                const auto planes = random_planes(random, 1);
+                body.cutter.follow_motion(body.mesh, body.positions);
+                for (int pass = 0; pass < 4; ++pass) {
+                    if (has_steps) body.cutter.follow_motion(body.mesh, body.positions);
+                    body.follow(body.cutter.split(
+                        body.mesh, Plane(planes[0].point, planes[0].normal), default_snap));
+                }
+                expect_parts(body, planes, 2e-3);
+            },
+            false);
+}
+
+TEST(LoopSplitter, MayBeWithdrawnAndComeBack) {
+    for_bodies(
+        4, 4,
+        [](Body& whole, Random& random) {
+            CutBody body(whole.data);
+            const auto planes = random_planes(random, 1);
+            const StraightPath path(planes[0]);
+            const CutId cut = body.cutter.begin_cut(default_snap);
+            double at = -2.0;
+            for (const double to : {0.1, -0.15, 0.3, -2.0, 0.35, 0.2, 2.0, -2.0}) {
+                body.lead(cut, path, at, to, 9);
+                at = to;
+            }
+            expect_parts(body, planes, 3e-3);
+            EXPECT_FALSE(body.cutter.is_in_tissue(cut));
+        },
+        false);
+}
+
+TEST(LoopSplitter, StopsOnNodesEdgesAndFaces) {
+    for_bodies(
+        20, 4,
+        [](Body& whole, Random& random) {
+            CutBody body(whole.data);
+            // A plane through a node; half of them in directions of the lattice.
+            const auto node = [&] {
+                return body.mesh.rest_position(VertexId(random.below(body.mesh.node_capacity())));
+            };
+            Divider plane;
+            for (;;) {
+                plane.point = node();
+                plane.normal = random.below(2) == 0 ? Vec3(random.grid_point(3) - Vec3::Ones())
+                                                    : random.vector(1.0);
+                if (plane.normal.norm() < 0.1) continue;
+                plane.normal.normalize();
+                const auto parts = exact_volumes({plane});
+                if (parts.size() == 2 && parts.front() > 2e-2) break;
+            }
+            const StraightPath path(plane, random.uniform(0.0, 6.0));
+            // It stops where it meets nodes, middles of edges and of faces.
+            std::vector<double> stops;
+            for (int i = 0; i < 6; ++i) {
+                Vec3 x = node();
+                const std::size_t what = random.below(3);
+                for (std::size_t k = 0; k < what; ++k) x += node();
+                stops.push_back((x / static_cast<double>(what + 1) - plane.point).dot(path.v));
+            }
+            if (random.below(3) != 0) std::ranges::sort(stops);  // else it goes back and on
+            stops.push_back(2.0);
+            const CutId cut = body.cutter.begin_cut(default_snap);
+            double at = -2.0;
+            for (const double to : stops) {
+                body.move(cut, path.edge(at), path.edge(to));
+                at = to;
+            }
+            const auto volumes = body.rest_volumes();
+            EXPECT_NEAR(Body::sum(volumes), body.volume_before, 1e-13);
+            const auto expected = exact_volumes({plane});
+            std::vector<double> large;
+            for (const double v : volumes)
+                if (v > 5e-3) large.push_back(v);
+            ASSERT_EQ(large.size(), 2u);
+            EXPECT_NEAR(large.front(), expected.front(), 1e-2);
+        },
+        false);
+}
+
+/// Blades go by turns through a body, and each crosses what the others have not finished.
+TEST(LoopSplitter, PartsABodyAlongThePathsOfSeveralBladesAtATime) {
+    for (const int num_blades : {2, 3})
+        for (const int num_steps : {7, 30})
+            for_bodies(
+                6, 4,
+                [&](Body& whole, Random& random) {
+                    CutBody body(whole.data);
+                    const auto planes = random_planes(random, num_blades);
+                    std::vector<StraightPath> paths;
+                    std::vector<CutId> cuts;
+                    for (const Divider& plane : planes) {
+                        paths.emplace_back(plane, static_cast<double>(paths.size()));
+                        cuts.push_back(body.cutter.begin_cut(default_snap));
+                    }
+                    for (int i = 0; i < num_steps; ++i) {
+                        body.cutter.follow_motion(body.mesh, body.positions);
+                        for (std::size_t k = 0; k < cuts.size(); ++k)
+                            body.follow(body.cutter.split(
+                                cuts[k], body.mesh, paths[k].edge(-2.0 + 4.0 * i / num_steps),
+                                paths[k].edge(-2.0 + 4.0 * (i + 1) / num_steps)));
+                    }
+                    expect_parts(body, planes, 5e-3);
+                    body.expect_replay();
+                },
+                false);
+}
+
+TEST(LoopFront, IsNotOnAMeshThatLacksItsNodes) {
+    const Mesh mesh =
+        Mesh::build(topology::box_mesh(CellKind::hexahedron, Vec3::Zero(), Vec3::Ones(), {1, 1, 1}))
+            .mesh;
+    const VertexId here(0), there(8);
+    const auto is_on = [&](auto change) {
+        LoopFront front;
+        change(front);
+        return front.is_on(mesh);
+    };
+    EXPECT_TRUE(is_on([&](LoopFront& front) { front.toggle_passed({here, VertexId(7)}); }));
+    EXPECT_FALSE(is_on([&](LoopFront& front) { front.put_on(there, 1.0); }));
+    EXPECT_FALSE(is_on([&](LoopFront& front) { front.mark(here, there); }));
+    EXPECT_FALSE(is_on([&](LoopFront& front) { front.toggle_passed({here, there}); }));
+    EXPECT_FALSE(is_on([&](LoopFront& front) { front.toggle_passed({there, here}); }));
+    EXPECT_FALSE(is_on([&](LoopFront& front) { front.set_open(CellId(0), here, there); }));
+    EXPECT_FALSE(is_on([&](LoopFront& front) { front.set_open(CellId(1), here, here); }));
+    EXPECT_FALSE(is_on([&](LoopFront& front) {
+        front.put_on(here, 1.0);
+        front.set_waiting({here, VertexId(1), there}, false);
+    }));
+}
+
+/// Their planes go through nodes of the mesh, and they stop in each other's planes.
+TEST(LoopSplitter, PartsABodyAlongLatticePlanesOfTwoBladesAtATime) {
+    for_bodies(
+        12, 4,
+        [](Body& whole, Random& random) {
+            CutBody body(whole.data);
+            std::vector<Divider> planes;
+            do {
+                planes.clear();
+                while (planes.size() < 2) {
+                    const Vec3 normal = random.grid_point(3) - Vec3::Ones(),
+                               point = 0.25 * (random.grid_point(3) + Vec3::Ones());
+                    if (normal.norm() > 0.0) planes.push_back({point, normal.normalized()});
+                }
+            } while (exact_volumes(planes).front() < 2e-3);
+            std::vector<CutId> cuts;
+            for (std::size_t k = 0; k < planes.size(); ++k)
+                cuts.push_back(body.cutter.begin_cut(default_snap));
+            constexpr int num_steps = 8;
+            for (int i = 0; i < num_steps; ++i) {
+                body.cutter.follow_motion(body.mesh, body.positions);
+                for (std::size_t k = 0; k < planes.size(); ++k) {
+                    const StraightPath path(planes[k]);
+                    body.follow(body.cutter.split(cuts[k], body.mesh,
+                                                  path.edge(-2.0 + 4.0 * i / num_steps),
+                                                  path.edge(-2.0 + 4.0 * (i + 1) / num_steps)));
+                }
+                for (const CutId cut : cuts)
+                    EXPECT_TRUE(body.cutter.contradictory_faces(cut, body.mesh).empty());
+            }
+            const auto volumes = body.rest_volumes(), expected = exact_volumes(planes);
+            EXPECT_NEAR(Body::sum(volumes), body.volume_before, 1e-13);
+            std::vector<double> large;  // but for what is between a plane and the nodes beside it
+            for (const double v : volumes)
+                if (v > 1.5e-3) large.push_back(v);
+            ASSERT_EQ(large.size(), expected.size());
+            for (std::size_t i = 0; i < large.size(); ++i) EXPECT_NEAR(large[i], expected[i], 2e-3);
+        },
+        false);
+}
+
+/// The section of a cell with a plane, as corners round it, m. For convex cells.
+Polygon section_of(const Mesh& mesh, CellId e, const Divider& plane) {
+    Polygon section;
+    for (int f = 0; f < mesh.num_faces(e); ++f)
+        for (int p = 0; p < mesh.face_size({e, f}); ++p) {
+            const topology::Dart d{{e, f}, p};
+            const Vec3 &a = mesh.rest_position(from(mesh, d)), &b = mesh.rest_position(to(mesh, d));
+            const double from_height = plane.height(a), to_height = plane.height(b);
+            if (from(mesh, d) < to(mesh, d) && (from_height < 0.0) != (to_height < 0.0))
+                section.push_back(a + from_height / (from_height - to_height) * (b - a));
+        }
+    if (section.size() < 3) return {};
+    Vec3 centre = Vec3::Zero();
+    for (const Vec3& x : section) centre += x / static_cast<double>(section.size());
+    const Vec3 u = plane.normal.unitOrthogonal(), v = plane.normal.cross(u);
+    std::ranges::sort(section, {}, [&](const Vec3& x) {
+        return std::atan2((x - centre).dot(v), (x - centre).dot(u));
+    });
+    return section;
+}
+
+/// The share of a section that is behind a line across `ahead` through `stop`.
+double share_behind(const Polygon& section, const Vec3& stop, const Vec3& ahead) {
+    Polygon behind;
+    for (std::size_t i = 0; i < section.size(); ++i) {
+        const Vec3 &x = section[i], &y = section[(i + 1) % section.size()];
+        const double a = ahead.dot(x - stop), b = ahead.dot(y - stop);
+        if (a <= 0.0) behind.push_back(x);
+        if (a * b < 0.0) behind.push_back(x + a / (a - b) * (y - x));
+    }
+    return behind.size() < 3 ? 0.0 : test::polygon_area(behind) / test::polygon_area(section);
+}
+
+/// A carrier that is cut in part moves as if it were whole.
+TEST(LoopSplitter, EndsWithEveryCellPartedOrWhole) {
+    for (const int num_steps : {1, 6})
+        for_bodies(6, 4, [&](Body& whole, Random& random) {
+            CutBody body(whole.data);
+            const fragments::FragmentMesh fragments_before(body.mesh);
+            fragments::FragmentMesh fragments = fragments_before;
+            const auto planes = random_planes(random, 1);
+            const StraightPath path(planes[0], random.uniform(0.0, 6.0));
+            const double stop = random.uniform(-0.2, 0.2);
+            const CutId cut = body.cutter.begin_cut(default_snap);
+            for (int i = 0; i < num_steps; ++i)
+                fragments.apply(body.mesh,
+                                body.move(cut, path.edge(-2.0 + (stop + 2.0) * i / num_steps),
+                                          path.edge(-2.0 + (stop + 2.0) * (i + 1) / num_steps))
+                                    .changes);
+            fragments.apply(body.mesh,
+                            body.follow(body.cutter.end_cut(cut, body.mesh, fragments,
+                                                            {path.edge(stop), {path.v, path.v}}))
+                                .changes);
+            EXPECT_FALSE(body.cutter.is_in_tissue(cut));
+            EXPECT_NEAR(Body::sum(body.rest_volumes()), body.volume_before, 1e-13);
+            std::size_t num_parted = 0, num_at_edge = 0;
+            std::vector<int> num_parts(fragments_before.element_capacity());
+            for (const CellId e : body.mesh.elements())
+                ++num_parts[fragments.carrier_of_cell(e).index()];
+            const Mesh uncut = Mesh::build(whole.data).mesh;
+            for (const CellId e : uncut.elements()) {
+                const Polygon section = section_of(uncut, e, planes[0]);
+                if (section.size() < 3) {
+                    EXPECT_EQ(num_parts[e.index()], 1);
+                    continue;
+                }
+                const double share = share_behind(section, path.edge(stop)[0], path.v);
+                num_parted += num_parts[e.index()] > 1;
+                num_at_edge += share > 0.0 && share < 1.0;
+                // Near a half, the nodes beside the plane decide.
+                if (std::abs(share - 0.5) < 0.05) continue;
+                EXPECT_EQ(num_parts[e.index()] > 1, share > 0.5) << share;
+            }
+            EXPECT_GT(num_parted, 0u);
+            EXPECT_GT(num_at_edge, 0u);
+        });
+}
+
+}  // namespace
+}  // namespace incise::cutting
