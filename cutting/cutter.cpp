@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "incise/base/error.h"
@@ -58,22 +59,16 @@ Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions, bool has_loops
 void Cutter::follow_motion(const Mesh& mesh, std::span<const Vec3> positions) {
     std::swap(before_, now_);
     now_.assign(positions);
-    for (auto& [n, opened] : opened_) move_inside(n, opened, positions);
+    constexpr std::size_t most_at_a_time =
+        500;  // so that a step takes no longer than those that cut
+    if (std::ranges::all_of(cuts_, [](const Cut& cut) { return cut.loops.is_empty(); }))
+        opened_.settle(mesh, most_at_a_time);
+    opened_.move_all(positions, now_);
     double largest = 0.0;
     for (std::size_t n = 0; n < positions.size(); ++n)
         largest = std::max(largest, (now_.values()[n] - before_.values()[n]).squaredNorm());
     boxes_.move(mesh, now_.values(), std::sqrt(largest));
     for (Cut& cut : cuts_) cut.has_moved = false;
-}
-
-/// Moves a node of opened faces into the body by its margin.
-void Cutter::move_inside(VertexId n, OpenedNode& opened, std::span<const Vec3> positions) {
-    opened.is_moved = true;
-    const Vec3& x = positions[n.index()];
-    Vec3 outwards = Vec3::Zero();
-    for (const auto& [previous, next] : opened.around)
-        outwards += (positions[next.index()] - x).cross(positions[previous.index()] - x);
-    if (const double norm = outwards.norm(); norm > 0.0) now_[n] -= opened.margin / norm * outwards;
 }
 
 std::optional<topology::CellPoint> Cutter::tissue_at(const Mesh& mesh,
@@ -201,17 +196,9 @@ Split Cutter::split(Mesh& mesh, const CutSurface& surface, double snap) {
     if (has_loops_) {
         LoopFront front;
         auto resting = suspended_cuts(std::nullopt, &Cut::loops);
-        const bool has_new =
-            std::ranges::any_of(opened_, [](const auto& entry) { return !entry.second.is_moved; });
-        if (has_new && resting.empty()) {  // a blade at work has to see nodes move, not jump
-            const std::vector<Vec3> positions(now_.values().begin(), now_.values().end());
-            double largest = 0.0;
-            for (auto& [n, opened] : opened_) {
-                if (opened.is_moved) continue;
-                move_inside(n, opened, positions);
-                largest = std::max(largest, opened.margin);
-            }
-            boxes_.move(mesh, now_.values(), largest);
+        if (resting.empty()) {  // a blade at work has to see nodes move, not jump
+            opened_.settle(mesh, std::numeric_limits<std::size_t>::max());
+            if (opened_.has_new()) boxes_.move(mesh, now_.values(), opened_.move_new(now_));
         }
         return noted(split_cells(mesh, motion(mesh), surface, front, resting), std::nullopt);
     }
@@ -248,53 +235,7 @@ void Cutter::apply(const Mesh& mesh, const ChangeSet& changes) {
             cuts_[i].loops.apply(mesh, changes);
         }
     boxes_.apply(mesh, changes);
-    if (has_loops_) find_opened(mesh, changes);
-}
-
-/// Finds the opened faces at each node that an edit has touched.
-void Cutter::find_opened(const Mesh& mesh, const ChangeSet& changes) {
-    for (const topology::VertexRecord& record : changes.nodes_removed) opened_.erase(record.id);
-    std::vector<VertexId> touched;
-    for (const CellId e : topology::touched_cells(changes))
-        if (e.index() < mesh.element_capacity() && mesh.is_alive(e))
-            std::ranges::copy(mesh.corners(e), std::back_inserter(touched));
-    std::ranges::sort(touched);
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    std::vector<CellId> star;
-    for (const VertexId n : touched) {
-        OpenedNode opened;
-        if (const auto before = opened_.find(n); before != opened_.end()) {
-            opened.is_moved = before->second.is_moved;
-            opened_.erase(before);
-        }
-        mesh.star(n, star);
-        const Vec3& x = mesh.rest_position(n);
-        Vec3 outwards = Vec3::Zero();
-        double area = 0.0, longest = 0.0;
-        for (const CellId e : star)
-            for (int f = 0; f < mesh.num_faces(e); ++f) {
-                const FaceId face{e, f};
-                const int size = mesh.face_size(face);
-                for (int p = 0; p < size; ++p) {
-                    const VertexId at = mesh.face_corner(face, p);
-                    longest = std::max(longest, (mesh.rest_position(at) - x).norm());
-                    // Faces of other cells were opened whole, or lie beside what was removed.
-                    if (at != n || !mesh.is_polyhedron(e) || !mesh.is_on_cut(face)) continue;
-                    const VertexId previous = mesh.face_corner(face, (p + size - 1) % size),
-                                   next = mesh.face_corner(face, (p + 1) % size);
-                    const Vec3 normal =
-                        (mesh.rest_position(next) - x).cross(mesh.rest_position(previous) - x);
-                    outwards += normal;
-                    area += normal.norm();
-                    opened.around.emplace_back(previous, next);
-                }
-            }
-        // At the end of a cut, both of its sides meet.
-        constexpr double least_share = 0.1;
-        if (!(outwards.norm() > least_share * area)) continue;
-        opened.margin = default_snap * longest;
-        opened_[n] = std::move(opened);
-    }
+    if (has_loops_) opened_.apply(mesh, changes);
 }
 
 std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) const {
@@ -325,17 +266,11 @@ std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) cons
 }
 
 bool Cutter::is_on(const Mesh& mesh) const {
-    const auto is_there = [&](VertexId n) { return n.index() < mesh.node_capacity(); };
     return boxes_.cover(mesh) && now_.values().size() == mesh.node_capacity() &&
            std::ranges::all_of(
                cuts_,
                [&](const Cut& cut) { return cut.front.is_on(mesh) && cut.loops.is_on(mesh); }) &&
-           std::ranges::all_of(opened_, [&](const auto& entry) {
-               return is_there(entry.first) &&
-                      std::ranges::all_of(entry.second.around, [&](const auto& neighbours) {
-                          return is_there(neighbours.first) && is_there(neighbours.second);
-                      });
-           });
+           opened_.is_on(mesh);
 }
 
 }  // namespace incise::cutting

@@ -10,6 +10,7 @@
 
 #include "incise/base/types.h"
 #include "incise/cutting/exact/loop_splitter.h"
+#include "incise/cutting/exact/opened_nodes.h"
 #include "incise/cutting/exact/snap_history.h"
 #include "incise/cutting/exact/splitter.h"
 #include "incise/cutting/tools/carver.h"
@@ -138,14 +139,6 @@ class Cutter {
             ar(self.is_in_use, self.snap, self.front, self.loops, self.edge, self.has_moved);
         }
     };
-    /// A node on faces that a cut has opened: by how much it counts as lying inside, and its
-    /// neighbours round each of the faces.
-    struct OpenedNode {
-        double margin = 0.0;    // m
-        bool is_moved = false;  // by the margin, in the present positions
-        std::vector<std::pair<VertexId, VertexId>> around;
-        static void archive(auto& ar, auto& self) { ar(self.margin, self.is_moved, self.around); }
-    };
     /// An edit that this cutter has made and that apply() has not followed yet.
     struct OwnEdit {
         std::uint64_t epoch = 0;         // after the edit
@@ -161,8 +154,6 @@ class Cutter {
     template <class Front>
     std::vector<SuspendedCutOf<Front>> suspended_cuts(std::optional<std::size_t> worker,
                                                       Front Cut::*front);
-    void find_opened(const topology::Mesh& mesh, const topology::ChangeSet& changes);
-    void move_inside(VertexId n, OpenedNode& opened, std::span<const Vec3> positions);
     /// Returns the last motion of the tissue. Cost: that of the boxes that edits have changed.
     TissueMotion motion(const topology::Mesh& mesh) {
         boxes_.refresh(mesh, now_.values());
@@ -178,7 +169,7 @@ class Cutter {
     OwnEdit own_edit_;
     bool has_loops_;      // true unless all cells are tetrahedra
     double shift_ = 0.0;  // of blades, m: see shifted()
-    std::unordered_map<VertexId, OpenedNode> opened_;
+    OpenedNodes opened_;
 };
 
 }  // namespace incise::cutting

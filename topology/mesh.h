@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
 #include "incise/topology/cell_shape.h"
+#include "incise/topology/id_map.h"
 #include "incise/topology/living_ids.h"
 #include "incise/topology/mesh_data.h"
 
@@ -180,7 +180,7 @@ class Mesh {
         CellKind row_kind = CellKind::polyhedron;  // that of the cell before it became one
         static void archive(auto& ar, auto& self) { ar(self.shape, self.neighbors, self.row_kind); }
     };
-    const Polyhedron& polyhedron(CellId e) const { return polyhedra_.find(e)->second; }
+    const Polyhedron& polyhedron(CellId e) const { return polyhedra_.at(e); }
     std::span<const VertexId> row(CellId e) const {
         return {corners_.data() + corner_begin_[e.index()],
                 corner_begin_[e.index() + 1] - corner_begin_[e.index()]};
@@ -203,7 +203,7 @@ class Mesh {
     std::vector<VertexId> corners_;
     std::vector<FaceId> neighbors_;
     std::vector<std::uint8_t> inside_faces_;  // by element, bit f for face f: see was_inside()
-    std::unordered_map<CellId, Polyhedron> polyhedra_;
+    IdMap<CellId, Polyhedron> polyhedra_;
 
     std::vector<std::int64_t> node_labels_, element_labels_;
     std::vector<VertexId> label_nodes_;  ///< by label; the first node if pinched

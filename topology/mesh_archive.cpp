@@ -15,12 +15,25 @@ class MeshArchive {
     static void list(auto& ar, auto& m) {
         ar(m.epoch_, m.num_nodes_, m.num_elements_, m.rest_positions_, m.incident_elements_,
            m.kinds_, m.alive_, m.regions_, m.corners_, m.neighbors_, m.inside_faces_,
-           m.node_labels_, m.element_labels_, m.label_nodes_, m.pinched_, m.polyhedra_);
+           m.node_labels_, m.element_labels_, m.label_nodes_, m.pinched_);
+    }
+
+    static void save(const Mesh& mesh, ArchiveWriter& ar) {
+        list(ar, mesh);
+        ar(std::uint64_t{mesh.polyhedra_.size()});
+        mesh.polyhedra_.for_each([&](CellId e, const Mesh::Polyhedron& cell) { ar(e, cell); });
     }
 
     static Mesh load(ArchiveReader& ar) {
         Mesh mesh;
         list(ar, mesh);
+        std::vector<std::pair<CellId, Mesh::Polyhedron>> polyhedra;
+        ar(polyhedra);
+        for (auto& [e, cell] : polyhedra) {
+            require(e.index() < mesh.kinds_.size() && mesh.is_polyhedron(e),
+                    "a cell of another kind has faces");
+            mesh.polyhedra_[e] = std::move(cell);
+        }
         MeshArchive(mesh).restore_rows();
         MeshArchive(mesh).require_ids();
         if (const auto faults = validate(mesh); !faults.empty())
@@ -36,15 +49,12 @@ class MeshArchive {
     }
 
     void restore_rows() {
-        std::size_t num_polyhedra = 0;
         for (std::size_t i = 0; i < mesh_.kinds_.size(); ++i) {
             CellKind kind = mesh_.kinds_[i];
             require(static_cast<std::size_t>(kind) <= num_cell_kinds, "an unknown kind of element");
             if (kind == CellKind::polyhedron) {
-                const auto cell = mesh_.polyhedra_.find(CellId(i));
-                require(cell != mesh_.polyhedra_.end(), "a polyhedron has no faces");
-                kind = restore(cell->second);
-                ++num_polyhedra;
+                require(mesh_.polyhedra_.contains(CellId(i)), "a polyhedron has no faces");
+                kind = restore(mesh_.polyhedra_.at(CellId(i)));
             }
             const CellTraits& t = traits(kind);
             mesh_.corner_begin_.push_back(mesh_.corner_begin_.back() +
@@ -52,7 +62,6 @@ class MeshArchive {
             mesh_.face_begin_.push_back(mesh_.face_begin_.back() +
                                         static_cast<std::size_t>(t.num_faces));
         }
-        require(num_polyhedra == mesh_.polyhedra_.size(), "a cell of another kind has faces");
         const std::size_t num_elements = mesh_.kinds_.size();
         require(mesh_.alive_.size() == num_elements && mesh_.regions_.size() == num_elements &&
                     mesh_.corners_.size() == mesh_.corner_begin_.back() &&
@@ -84,10 +93,12 @@ class MeshArchive {
             return !f.is_valid() ||
                    (is_element_or_none(f.cell) && f.face >= 0 && f.face < mesh_.num_faces(f.cell));
         };
-        const auto names_ids = [&](const auto& entry) {
-            return std::ranges::all_of(entry.second.corners, is_node) &&
-                   std::ranges::all_of(entry.second.neighbors, is_face_or_none);
-        };
+        bool do_polyhedra_name_ids = true;
+        mesh_.polyhedra_.for_each([&](CellId, const Mesh::Polyhedron& cell) {
+            do_polyhedra_name_ids = do_polyhedra_name_ids &&
+                                    std::ranges::all_of(cell.corners, is_node) &&
+                                    std::ranges::all_of(cell.neighbors, is_face_or_none);
+        });
         const auto is_labelled = [&](VertexId n) {
             return !n.is_valid() || n.index() < mesh_.node_labels_.size();
         };
@@ -96,8 +107,7 @@ class MeshArchive {
                     std::ranges::all_of(mesh_.corners_, is_node) &&
                     std::ranges::all_of(mesh_.incident_elements_, is_element_or_none) &&
                     std::ranges::all_of(mesh_.neighbors_, is_face_or_none) &&
-                    std::ranges::all_of(mesh_.polyhedra_, names_ids) &&
-                    std::ranges::all_of(mesh_.label_nodes_, is_labelled) &&
+                    do_polyhedra_name_ids && std::ranges::all_of(mesh_.label_nodes_, is_labelled) &&
                     std::ranges::all_of(mesh_.pinched_,
                                         [&](const auto& row) { return is_node(row.second); }),
                 "a node or an element that it names is not there");
@@ -106,7 +116,7 @@ class MeshArchive {
     Mesh& mesh_;
 };
 
-void save(const Mesh& mesh, ArchiveWriter& ar) { MeshArchive::list(ar, mesh); }
+void save(const Mesh& mesh, ArchiveWriter& ar) { MeshArchive::save(mesh, ar); }
 
 Mesh load_mesh(ArchiveReader& ar) { return MeshArchive::load(ar); }
 

@@ -37,6 +37,27 @@ TEST(LoopSplitter, CutsNothingMoreAtTheSamePlace) {
         false);
 }
 
+/// Two blades by turns, and one along a plane through nodes of the mesh.
+TEST(LoopSplitter, CutsNothingMoreAlongTheSamePaths) {
+    for (const bool is_lattice_plane : {false, true})
+        for_bodies(
+            6, 4,
+            [&](Body& whole, Random& random) {
+                CutBody body(whole.data);
+                const auto planes =
+                    is_lattice_plane ? lattice_planes(random, 1) : random_planes(random, 2);
+                std::size_t num_cells = 0;
+                for (int pass = 0; pass < 4; ++pass) {
+                    body.lead_by_turns(planes, 8, 0.3 * pass);
+                    if (pass == 0) num_cells = body.mesh.num_elements();
+                    EXPECT_EQ(body.mesh.num_elements(), num_cells) << "pass " << pass;
+                }
+                const auto volumes = body.rest_volumes(), expected = exact_volumes(planes);
+                ASSERT_EQ(volumes.size(), expected.size());
+            },
+            false);
+}
+
 /// Also in the same step, before the tissue has moved.
 TEST(LoopSplitter, CutsNothingMoreAlongTheSamePlane) {
     for (const bool has_steps : {true, false})
@@ -180,15 +201,7 @@ TEST(LoopSplitter, PartsABodyAlongLatticePlanesOfTwoBladesAtATime) {
         12, 4,
         [](Body& whole, Random& random) {
             CutBody body(whole.data);
-            std::vector<Divider> planes;
-            do {
-                planes.clear();
-                while (planes.size() < 2) {
-                    const Vec3 normal = random.grid_point(3) - Vec3::Ones(),
-                               point = 0.25 * (random.grid_point(3) + Vec3::Ones());
-                    if (normal.norm() > 0.0) planes.push_back({point, normal.normalized()});
-                }
-            } while (exact_volumes(planes).front() < 2e-3);
+            const auto planes = lattice_planes(random, 2);
             std::vector<CutId> cuts;
             for (std::size_t k = 0; k < planes.size(); ++k)
                 cuts.push_back(body.cutter.begin_cut(default_snap));

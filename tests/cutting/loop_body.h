@@ -226,6 +226,19 @@ inline std::vector<Divider> random_planes(Random& random, int count) {
     }
 }
 
+/// Planes through nodes of a cube of four cells a side, in directions of the lattice.
+inline std::vector<Divider> lattice_planes(Random& random, std::size_t count) {
+    for (;;) {
+        std::vector<Divider> planes;
+        while (planes.size() < count) {
+            const Vec3 normal = random.grid_point(3) - Vec3::Ones(),
+                       point = 0.25 * (random.grid_point(3) + Vec3::Ones());
+            if (normal.norm() > 0.0) planes.push_back({point, normal.normalized()});
+        }
+        if (exact_volumes(planes).front() >= 2e-3) return planes;
+    }
+}
+
 /// @param with_tetrahedra  also those of tetrahedra only, which a cutter divides otherwise
 template <class Check>
 void for_bodies(int num_seeds, int n, Check check, bool with_tetrahedra = true) {
@@ -279,6 +292,21 @@ class CutBody : public Body {
         for (int i = 0; i < num_steps; ++i)
             move(cut, path.edge(from + (to - from) * i / num_steps),
                  path.edge(from + (to - from) * (i + 1) / num_steps));
+    }
+    /// One blade for each plane; they go by turns.
+    void lead_by_turns(const std::vector<Divider>& planes, int num_steps, double turn = 0.0) {
+        std::vector<CutId> cuts;
+        for (std::size_t k = 0; k < planes.size(); ++k)
+            cuts.push_back(cutter.begin_cut(default_snap));
+        for (int i = 0; i < num_steps; ++i) {
+            cutter.follow_motion(mesh, positions);
+            for (std::size_t k = 0; k < planes.size(); ++k) {
+                const StraightPath path(planes[k], turn);
+                follow(cutter.split(cuts[k], mesh, path.edge(-2.0 + 4.0 * i / num_steps),
+                                    path.edge(-2.0 + 4.0 * (i + 1) / num_steps)));
+            }
+        }
+        for (const CutId cut : cuts) cutter.remove_cut(cut);
     }
     Split cut_along(const CutSurface& surface) {
         cutter.follow_motion(mesh, positions);

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "incise/cutting/exact/opened_nodes.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "incise/cutting/exact/split.h"
+
+namespace incise::cutting {
+
+using topology::ChangeSet;
+using topology::Mesh;
+
+namespace {
+
+/// Two opened faces whose normals have at least this cosine count as one plane.
+constexpr double least_cosine_of_plane = 0.98;
+/// A node has at most so many planes, those of the widest faces.
+constexpr std::size_t max_planes = 6;
+/// A node is not moved by more than this many margins: in a wedge so sharp, or between the two
+/// faces at the tip of a cut, there is no place inside.
+constexpr double most_margins = 4.0;
+
+/// The half space normal . d <= -depth.
+struct HalfSpace {
+    Vec3 normal;  // of unit length
+    double depth;
+};
+
+/// Returns the shortest vector into all half spaces; zero if there is none within `most`.
+Vec3 shortest_into(std::span<const HalfSpace> spaces, double most) {
+    constexpr double rounding = 1e-9;  // of a margin
+    Vec3 best = Vec3::Zero();
+    double least = std::numeric_limits<double>::infinity();
+    const auto try_it = [&](const Vec3& d) {
+        const double length = d.norm();
+        if (!(length < least) || length > most) return;
+        for (const HalfSpace& space : spaces)
+            if (space.normal.dot(d) > -space.depth + rounding * most) return;
+        best = d;
+        least = length;
+    };
+    const auto try_edge = [&](const HalfSpace& a, const HalfSpace& b) {
+        const double cosine = a.normal.dot(b.normal), det = 1.0 - cosine * cosine;
+        if (det < rounding) return;
+        try_it(
+            -((a.depth - cosine * b.depth) * a.normal + (b.depth - cosine * a.depth) * b.normal) /
+            det);
+    };
+    const auto try_corner = [&](const HalfSpace& a, const HalfSpace& b, const HalfSpace& c) {
+        const Vec3 bc = b.normal.cross(c.normal), ca = c.normal.cross(a.normal),
+                   ab = a.normal.cross(b.normal);
+        const double det = a.normal.dot(bc);
+        if (std::abs(det) < rounding) return;
+        try_it(-(a.depth * bc + b.depth * ca + c.depth * ab) / det);
+    };
+    try_it(Vec3::Zero());
+    for (std::size_t i = 0; i < spaces.size(); ++i) {
+        try_it(-spaces[i].depth * spaces[i].normal);
+        for (std::size_t j = 0; j < i; ++j) {
+            try_edge(spaces[i], spaces[j]);
+            for (std::size_t k = 0; k < j; ++k) try_corner(spaces[i], spaces[j], spaces[k]);
+        }
+    }
+    return best;
+}
+
+/// An opened face at rest.
+struct Face {
+    std::array<VertexId, 3> corners;
+    Vec3 normal;   // of unit length, outwards
+    double width;  // the shortest altitude, m
+};
+
+/// Appends the opened faces of a cell. Faces of cells that are no polyhedra were opened whole, or
+/// lie beside what was removed.
+void append_opened_faces(const Mesh& mesh, CellId e, std::vector<Face>& faces) {
+    if (!mesh.is_polyhedron(e)) return;
+    for (int f = 0; f < mesh.num_faces(e); ++f) {
+        const FaceId face{e, f};
+        if (!mesh.is_on_cut(face)) continue;
+        const int size = mesh.face_size(face);
+        const Vec3& first = mesh.rest_position(mesh.face_corner(face, 0));
+        for (int p = 2; p < size; ++p) {
+            const VertexId b = mesh.face_corner(face, p - 1), c = mesh.face_corner(face, p);
+            const Vec3 u = mesh.rest_position(b) - first, v = mesh.rest_position(c) - first,
+                       normal = u.cross(v);
+            const double twice_area = normal.norm();
+            if (twice_area > 0.0)
+                faces.push_back({{mesh.face_corner(face, 0), b, c},
+                                 normal / twice_area,
+                                 twice_area / std::max({u.norm(), v.norm(), (v - u).norm()})});
+        }
+    }
+}
+
+/// True if a point is nearer to a face than `distance`, or beside one of its corners by little
+/// more.
+bool is_within(const Mesh& mesh, const Face& face, const Vec3& x, double distance) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 &a = mesh.rest_position(face.corners[k]),
+                   &b = mesh.rest_position(face.corners[(k + 1) % 3]);
+        const Vec3 outwards = (b - a).cross(face.normal).stableNormalized();
+        if (outwards.dot(x - a) >= distance) return false;
+    }
+    return std::abs(face.normal.dot(x - mesh.rest_position(face.corners[0]))) < distance;
+}
+
+/// What is near a node: nodes that hang together with it, itself included, their cells, and those
+/// joined to these.
+struct Near {
+    std::vector<VertexId> nodes;
+    std::vector<CellId> cells;
+};
+/// A cut through a node of the mesh makes nodes round it, whose cells are smaller than the margin.
+Near near_to(const Mesh& mesh, VertexId n, double distance) {
+    Near near{{n}, {}};
+    std::vector<CellId> star;
+    for (std::size_t i = 0; i < near.nodes.size(); ++i) {  // more are added
+        mesh.star(near.nodes[i], star);
+        for (const CellId e : star) {
+            if (std::ranges::find(near.cells, e) != near.cells.end()) continue;
+            near.cells.push_back(e);
+            for (const VertexId other : mesh.corners(e))
+                if ((mesh.rest_position(other) - mesh.rest_position(n)).norm() < distance &&
+                    std::ranges::find(near.nodes, other) == near.nodes.end())
+                    near.nodes.push_back(other);
+        }
+    }
+    const std::size_t num_at_nodes = near.cells.size();
+    for (std::size_t i = 0; i < num_at_nodes; ++i)
+        for (int f = 0; f < mesh.num_faces(near.cells[i]); ++f) {
+            const CellId e = mesh.neighbor({near.cells[i], f}).cell;
+            if (e.is_valid() && std::ranges::find(near.cells, e) == near.cells.end())
+                near.cells.push_back(e);
+        }
+    return near;
+}
+
+}  // namespace
+
+/// Returns the tolerance of a cut at a node, m.
+double OpenedNodes::margin_of(const Mesh& mesh, VertexId n) const {
+    double longest = length_of(n);
+    std::vector<CellId> star;
+    mesh.star(n, star);
+    for (const CellId e : star)
+        for (const VertexId other : mesh.corners(e))
+            longest = std::max(longest, (mesh.rest_position(other) - mesh.rest_position(n)).norm());
+    return default_snap * longest;
+}
+
+void OpenedNodes::apply(const Mesh& mesh, const ChangeSet& changes) {
+    for (const topology::VertexRecord& record : changes.nodes_added) {
+        const Vec3& first = mesh.rest_position(record.sources[0].node);
+        double longest = 0.0;
+        for (int k = 0; k < record.num_sources; ++k) {
+            const VertexId source = record.sources[static_cast<std::size_t>(k)].node;
+            longest =
+                std::max({longest, length_of(source), (mesh.rest_position(source) - first).norm()});
+        }
+        lengths_[record.id] = longest;
+    }
+    for (const topology::VertexRecord& record : changes.nodes_removed) {
+        nodes_.erase(record.id);
+        lengths_.erase(record.id);
+    }
+    std::vector<VertexId> touched;
+    for (const CellId e : topology::touched_cells(changes))
+        if (e.index() < mesh.element_capacity() && mesh.is_alive(e))
+            std::ranges::copy(mesh.corners(e), std::back_inserter(touched));
+    std::ranges::sort(touched);
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    std::vector<CellId> star;
+    for (const VertexId n : touched) {
+        Node node;
+        if (const auto before = nodes_.find(n); before != nodes_.end()) {
+            node.is_moved = before->second.is_moved;
+            node.offset = before->second.offset;
+            nodes_.erase(before);
+        }
+        mesh.star(n, star);
+        const Vec3& x = mesh.rest_position(n);
+        Vec3 outwards = Vec3::Zero();
+        double area = 0.0;
+        bool is_beside = false;
+        for (const CellId e : star) {
+            // Faces of other cells were opened whole, or lie beside what was removed.
+            if (!mesh.is_polyhedron(e)) continue;
+            for (int f = 0; f < mesh.num_faces(e); ++f) {
+                const FaceId face{e, f};
+                if (!mesh.is_on_cut(face)) continue;
+                is_beside = true;
+                const int size = mesh.face_size(face);
+                for (int p = 0; p < size; ++p) {
+                    if (mesh.face_corner(face, p) != n) continue;
+                    const VertexId previous = mesh.face_corner(face, (p + size - 1) % size),
+                                   next = mesh.face_corner(face, (p + 1) % size);
+                    const Vec3 normal =
+                        (mesh.rest_position(next) - x).cross(mesh.rest_position(previous) - x);
+                    outwards += normal;
+                    area += normal.norm();
+                    node.around.emplace_back(previous, next);
+                }
+            }
+        }
+        if (is_beside) unsettled_.push_back(n);
+        // At the end of a cut, both of its sides meet.
+        constexpr double least_share = 0.1;
+        if (!(outwards.norm() > least_share * area)) continue;
+        node.margin = margin_of(mesh, n);
+        nodes_[n] = std::move(node);
+    }
+}
+
+void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
+    if (unsettled_.empty()) return;
+    const auto is_gone = [&](VertexId n) { return !mesh.is_alive(n); };
+    std::erase_if(unsettled_, is_gone);
+    std::ranges::sort(unsettled_);
+    unsettled_.erase(std::unique(unsettled_.begin(), unsettled_.end()), unsettled_.end());
+    const std::size_t begin = unsettled_.size() - std::min(most, unsettled_.size());
+    std::unordered_map<CellId, std::vector<Face>> faces_of;
+    for (std::size_t i = begin; i < unsettled_.size(); ++i) {
+        const VertexId n = unsettled_[i];
+        Node node;
+        if (const auto before = nodes_.find(n); before != nodes_.end()) {
+            node = std::move(before->second);
+            nodes_.erase(before);
+        }
+        node.margin = margin_of(mesh, n);
+        node.is_moved = false;
+        std::vector<Face> faces;
+        for (const CellId e : near_to(mesh, n, 2.0 * node.margin).cells) {
+            const auto [it, is_new] = faces_of.try_emplace(e);
+            if (is_new) append_opened_faces(mesh, e, it->second);
+            for (const Face& face : it->second)
+                if (is_within(mesh, face, mesh.rest_position(n), 2.0 * node.margin))
+                    faces.push_back(face);
+        }
+        std::ranges::stable_sort(faces, std::greater(), &Face::width);
+        std::vector<HalfSpace> spaces;
+        node.planes.clear();
+        for (const Face& face : faces) {
+            const auto is_same = [&](const HalfSpace& other) {
+                return other.normal.dot(face.normal) >= least_cosine_of_plane;
+            };
+            if (spaces.size() == max_planes || std::ranges::any_of(spaces, is_same)) continue;
+            spaces.push_back({face.normal, node.margin});
+            // The places of the nodes, which are not exactly on the cut, turn narrow faces.
+            if (face.width < node.margin && spaces.size() > 1 &&
+                shortest_into(spaces, most_margins * node.margin).isZero(0.0)) {
+                spaces.pop_back();
+                continue;
+            }
+            node.planes.push_back(face.corners);
+        }
+        if (!node.planes.empty() || !node.around.empty()) nodes_[n] = std::move(node);
+    }
+    unsettled_.resize(begin);
+}
+
+/// Moves a node into the body by its margin.
+void OpenedNodes::move(VertexId n, Node& node, std::span<const Vec3> positions, Positions& seen) {
+    node.is_moved = true;
+    const Vec3& x = positions[n.index()];
+    if (!node.planes.empty()) {
+        std::array<HalfSpace, max_planes> spaces;
+        std::size_t count = 0;
+        for (const auto& [a, b, c] : node.planes) {
+            const Vec3& first = positions[a.index()];
+            const Vec3 normal = (positions[b.index()] - first)
+                                    .cross(positions[c.index()] - first)
+                                    .stableNormalized();
+            spaces[count++] = {normal, node.margin + normal.dot(x - first)};
+        }
+        node.offset = shortest_into(std::span(spaces).first(count), most_margins * node.margin);
+        seen[n] = x + node.offset;
+        return;
+    }
+    Vec3 outwards = Vec3::Zero();
+    for (const auto& [previous, next] : node.around)
+        outwards += (positions[next.index()] - x).cross(positions[previous.index()] - x);
+    node.offset = -node.margin * outwards.stableNormalized();
+    seen[n] = x + node.offset;
+}
+
+void OpenedNodes::move_all(std::span<const Vec3> positions, Positions& seen) {
+    for (auto& [n, node] : nodes_) move(n, node, positions, seen);
+}
+
+double OpenedNodes::move_new(Positions& seen) {
+    std::vector<Vec3> positions(seen.values().begin(), seen.values().end());
+    for (const auto& [n, node] : nodes_) positions[n.index()] -= node.offset;
+    double farthest = 0.0;
+    for (auto& [n, node] : nodes_) {
+        if (node.is_moved) continue;
+        const Vec3 before = node.offset;
+        move(n, node, positions, seen);
+        farthest = std::max(farthest, (node.offset - before).norm());
+    }
+    return farthest;
+}
+
+bool OpenedNodes::has_new() const {
+    return std::ranges::any_of(nodes_, [](const auto& entry) { return !entry.second.is_moved; });
+}
+
+bool OpenedNodes::is_on(const Mesh& mesh) const {
+    const auto is_there = [&](VertexId n) { return n.index() < mesh.node_capacity(); };
+    return std::ranges::all_of(
+               nodes_,
+               [&](const auto& entry) {
+                   return is_there(entry.first) &&
+                          std::ranges::all_of(entry.second.around, [&](const auto& neighbours) {
+                              return is_there(neighbours.first) && is_there(neighbours.second);
+                          });
+               }) &&
+           std::ranges::all_of(lengths_, [&](const auto& entry) { return is_there(entry.first); });
+}
+
+}  // namespace incise::cutting

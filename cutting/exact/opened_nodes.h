@@ -1,0 +1,81 @@
+// Nodes on faces that cuts have opened, which count as lying inside the body by a margin.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "incise/base/types.h"
+#include "incise/topology/change_set.h"
+#include "incise/topology/field.h"
+#include "incise/topology/mesh.h"
+
+namespace incise::cutting {
+
+/// Knows the nodes that lie on opened faces, and moves them into the body by the tolerance of a cut
+/// in the eyes of later cuts. So a blade that comes again to such a face, at the same place to the
+/// tolerance, finds all of the body on one side of it.
+///
+/// While a cut is in progress, a node goes in along the mean normal of its faces. When all cuts are
+/// over, the nodes are *settled*: then a node, also one beside the faces by less than the
+/// tolerance, goes inside each of the planes of opened faces near it. Where planes meet, this is
+/// where the body with its faces moved inwards has its edges and corners.
+class OpenedNodes {
+  public:
+    using Positions = topology::NodeField<VertexId, Vec3>;
+
+    /// Follows an edit of the mesh. Nodes that are new here are not moved before the next
+    /// move_all() or move_new(). Cost: proportional to the edit.
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+
+    /// Settles nodes that edits have touched.
+    /// @param most  so many of them at most
+    /// @pre  no cut is in progress
+    /// Cost: some ten microseconds a node.
+    void settle(const topology::Mesh& mesh, std::size_t most);
+
+    /// Moves all nodes in `seen`, by vertex id.
+    /// @param positions  where the nodes are, m
+    void move_all(std::span<const Vec3> positions, Positions& seen);
+    /// Moves those nodes that are not where they should be. Returns how far they go at most, m.
+    double move_new(Positions& seen);
+    /// True if some nodes are not where they should be.
+    bool has_new() const;
+
+    /// True if the mesh has all nodes that it names.
+    bool is_on(const topology::Mesh& mesh) const;
+    static void archive(auto& ar, auto& self) { ar(self.nodes_, self.lengths_, self.unsettled_); }
+
+  private:
+    /// Corners of an opened face, anticlockwise as seen from outside.
+    using Plane = std::array<VertexId, 3>;
+    struct Node {
+        double margin = 0.0;         // m
+        Vec3 offset = Vec3::Zero();  // by which it is moved in the present positions, m
+        bool is_moved = false;       // true if by as much as it should be
+        std::vector<std::pair<VertexId, VertexId>> around;  // its neighbours round the faces
+        std::vector<Plane> planes;                          // of a node that is settled
+        static void archive(auto& ar, auto& self) {
+            ar(self.margin, self.offset, self.is_moved, self.around, self.planes);
+        }
+    };
+
+    double length_of(VertexId n) const {
+        const auto it = lengths_.find(n);
+        return it != lengths_.end() ? it->second : 0.0;
+    }
+    double margin_of(const topology::Mesh& mesh, VertexId n) const;
+    static void move(VertexId n, Node& node, std::span<const Vec3> positions, Positions& seen);
+
+    std::unordered_map<VertexId, Node> nodes_;
+    std::vector<VertexId> unsettled_;  // on or beside opened faces
+    // By node that an edit has made: the longest length at rest of the edge or face on which it
+    // did, or of those of its sources, m. The cells at it can be much smaller.
+    std::unordered_map<VertexId, double> lengths_;
+};
+
+}  // namespace incise::cutting
