@@ -13,12 +13,13 @@
 #include "tests/io/reader_samples.h"
 #include "tests/support/mesh_consistency.h"
 #include "tests/support/mutation.h"
+#include "tests/support/num_cases.h"
 
 namespace incise::io {
 namespace {
 
 using Reader = MeshFile (*)(const InputFile&, const ReadOptions&);
-constexpr int mutations_of_a_sample = 1500;  // of each sample
+constexpr int mutations_of_a_sample = test::num_cases(1500);
 
 void expect_read_or_refused(Reader reader, const std::vector<Sample>& samples) {
     int num_refused = 0;
