@@ -10,6 +10,7 @@
 #include "incise/cutting/exact/cut_plan.h"
 #include "incise/cutting/surfaces/swept_edge.h"
 #include "incise/cutting/tools/separator.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::cutting {
 
@@ -39,6 +40,29 @@ Box box_round(const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edg
     return box;
 }
 
+/// Returns the mean volume of the carriers at rest, m3, of which cells are left. It is the same, to
+/// the bit, for a body that was cut and read from a file: that has the carriers in the same order.
+double mean_carrier_volume(const Mesh& mesh) {
+    const topology::Carriers& carriers = mesh.source_carriers();
+    std::vector<bool> is_counted(carriers.corners.size(), false);
+    double volume = 0.0;
+    std::size_t count = 0;
+    for (const CellId e : mesh.elements()) {
+        const std::int64_t row =
+            carriers.is_empty() ? topology::Carriers::whole : carriers.of_cell[e.index()];
+        if (row == topology::Carriers::whole) {
+            volume += topology::rest_volume(mesh, e);
+        } else {
+            const auto i = static_cast<std::size_t>(row);
+            if (is_counted[i]) continue;
+            is_counted[i] = true;
+            volume += topology::signed_volume(carriers.corners[i].kind(), carriers.corners[i]);
+        }
+        ++count;
+    }
+    return count == 0 ? 0.0 : volume / static_cast<double>(count);
+}
+
 }  // namespace
 
 Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions, bool has_loops)
@@ -48,11 +72,13 @@ Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions, bool has_loops
       has_loops_(has_loops || std::ranges::any_of(mesh.elements(), [&](CellId e) {
                      return mesh.kind(e) != topology::CellKind::tetrahedron;
                  })) {
-    constexpr double share_of_cell = 1e-7;
-    double volume = 0.0;
-    for (const CellId e : mesh.elements()) volume += topology::rest_volume(mesh, e);
-    if (mesh.num_elements() > 0)
-        shift_ = share_of_cell * std::cbrt(volume / static_cast<double>(mesh.num_elements()));
+    constexpr double share_of_carrier = 1e-7;
+    shift_ = share_of_carrier * std::cbrt(mean_carrier_volume(mesh));
+    if (!has_loops_) return;
+    std::vector<VertexId> on_cuts;
+    for (const CellId e : mesh.elements())
+        if (mesh.is_polyhedron(e)) std::ranges::copy(mesh.corners(e), std::back_inserter(on_cuts));
+    find_opened(mesh, std::move(on_cuts));
 }
 
 void Cutter::follow_motion(const Mesh& mesh, std::span<const Vec3> positions) {
@@ -239,20 +265,21 @@ void Cutter::apply(const Mesh& mesh, const ChangeSet& changes) {
             cuts_[i].loops.apply(mesh, changes);
         }
     boxes_.apply(mesh, changes);
-    if (has_loops_) find_opened(mesh, changes);
-}
-
-/// Finds the opened faces at each node that an edit has touched.
-void Cutter::find_opened(const Mesh& mesh, const ChangeSet& changes) {
+    if (!has_loops_) return;
     for (const topology::VertexRecord& record : changes.nodes_removed) opened_.erase(record.id);
     std::vector<VertexId> touched;
     for (const CellId e : topology::touched_cells(changes))
         if (e.index() < mesh.element_capacity() && mesh.is_alive(e))
             std::ranges::copy(mesh.corners(e), std::back_inserter(touched));
-    std::ranges::sort(touched);
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    find_opened(mesh, std::move(touched));
+}
+
+/// Finds the opened faces at each of some nodes.
+void Cutter::find_opened(const Mesh& mesh, std::vector<VertexId> nodes) {
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     std::vector<CellId> star;
-    for (const VertexId n : touched) {
+    for (const VertexId n : nodes) {
         OpenedNode opened;
         if (const auto before = opened_.find(n); before != opened_.end()) {
             opened.is_moved = before->second.is_moved;

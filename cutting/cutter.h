@@ -53,7 +53,8 @@ struct CutId {
 /// finished cut, does not slice thin layers off it.
 class Cutter {
   public:
-    /// Starts without cuts. Cost: O(n).
+    /// Starts without cuts in progress. A body that was cut before, as its source says, has the
+    /// faces that these cuts have opened. Cost: O(n).
     /// @param mesh       the body
     /// @param positions  of its nodes
     /// @param has_loops  true to cut tetrahedra, too, as other cells are
@@ -161,7 +162,7 @@ class Cutter {
     template <class Front>
     std::vector<SuspendedCutOf<Front>> suspended_cuts(std::optional<std::size_t> worker,
                                                       Front Cut::*front);
-    void find_opened(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+    void find_opened(const topology::Mesh& mesh, std::vector<VertexId> nodes);
     void move_inside(VertexId n, OpenedNode& opened, std::span<const Vec3> positions);
     /// Returns the last motion of the tissue. Cost: that of the boxes that edits have changed.
     TissueMotion motion(const topology::Mesh& mesh) {
