@@ -1,10 +1,13 @@
 // incise info: describes a mesh, a surface or a label image, as text or as JSON.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <array>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "incise/app/image_info.h"
 #include "incise/app/messages.h"
@@ -23,9 +26,11 @@ namespace incise::app {
 namespace {
 
 struct MeshInfo {
-    std::size_t num_points = 0;
+    std::size_t num_points = 0, num_cells = 0;
     int num_components = 0;
     topology::MeshMetrics metrics;
+    /// By kind, the cells as they were before any cut of which polyhedra are parts.
+    std::array<std::size_t, topology::num_cell_kinds> cut_cells{};
     std::optional<cutting::FragmentCounts> fragments;  ///< of a body that was cut
     std::vector<std::string> warnings;
 
@@ -34,17 +39,33 @@ struct MeshInfo {
     }
 };
 
+constexpr auto polyhedron = static_cast<std::size_t>(topology::CellKind::polyhedron);
+
+/// Returns by kind how many cells a cut has divided into polyhedra, or given other faces.
+std::array<std::size_t, topology::num_cell_kinds> cut_cells_of(const topology::MeshData& mesh) {
+    std::vector<bool> is_cut(mesh.carriers.corners.size(), false);
+    for (std::size_t c = 0; c < mesh.num_cells(); ++c)
+        if (mesh.kinds[c] == topology::CellKind::polyhedron)
+            is_cut[static_cast<std::size_t>(mesh.carriers.of_cell[c])] = true;
+    std::array<std::size_t, topology::num_cell_kinds> count{};
+    for (std::size_t row = 0; row < is_cut.size(); ++row)
+        if (is_cut[row]) ++count[static_cast<std::size_t>(mesh.carriers.corners[row].kind())];
+    return count;
+}
+
 MeshInfo look_at(const InfoOptions& options) {
     auto file = read_input(options.mesh, options.input);
     weld_input(file, options.input);
     MeshInfo info;
     info.num_points = num_points(file.mesh);
+    info.num_cells = file.mesh.num_cells();
     info.warnings = std::move(file.warnings);
     try {
         const auto built = topology::Mesh::build(file.mesh, scenario::weld_advice());
         info.warnings.insert(info.warnings.end(), built.warnings.begin(), built.warnings.end());
         info.num_components = topology::components(built.mesh).count;
         info.metrics = topology::measure(file.mesh);
+        info.cut_cells = cut_cells_of(file.mesh);
         if (!file.mesh.carriers.is_empty())
             info.fragments = cutting::counts_of(built.mesh, fragments::FragmentMesh(built.mesh));
     } catch (const InputError& error) {
@@ -57,9 +78,12 @@ nlohmann::ordered_json as_json(const MeshInfo& info) {
     const auto& m = info.metrics;
     nlohmann::ordered_json json;
     json["points"] = info.num_points;
-    constexpr const char* keys[] = {"tets", "hexes", "wedges", "pyramids"};
+    constexpr const char* keys[] = {"tets", "hexes", "wedges", "pyramids", "polyhedra"};
     for (std::size_t kind = 0; kind < std::size(keys); ++kind)
         json[keys[kind]] = m.num_of_kind[kind];
+    if (m.num_of_kind[polyhedron] > 0)
+        for (std::size_t kind = 0; kind < info.cut_cells.size(); ++kind)
+            json["polyhedra_are_parts_of"][keys[kind]] = info.cut_cells[kind];
     json["components"] = info.num_components;
     json["volume"] = m.volume;
     json["surface_area"] = m.surface_area;
@@ -81,12 +105,26 @@ nlohmann::ordered_json as_json(const MeshInfo& info) {
     return json;
 }
 
+/// Returns a text such as "54 hexahedra, 1 wedge".
+std::string list_of(const std::array<std::size_t, topology::num_cell_kinds>& counts) {
+    std::string text;
+    for (std::size_t kind = 0; kind < counts.size(); ++kind) {
+        if (counts[kind] == 0) continue;
+        const auto& traits = topology::cell_traits[kind];
+        text += (text.empty() ? "" : ", ") + std::to_string(counts[kind]) + " " +
+                (counts[kind] == 1 ? traits.name : traits.plural);
+    }
+    return text;
+}
+
 void print_text(const MeshInfo& info) {
     const auto& m = info.metrics;
     std::printf("points           %zu\n", info.num_points);
     for (std::size_t kind = 0; kind < m.num_of_kind.size(); ++kind)
         if (m.num_of_kind[kind] > 0)
-            std::printf("%-16s %zu\n", topology::cell_traits[kind].plural, m.num_of_kind[kind]);
+            std::printf(
+                "%-16s %zu%s\n", topology::cell_traits[kind].plural, m.num_of_kind[kind],
+                kind == polyhedron ? (", parts of " + list_of(info.cut_cells)).c_str() : "");
     for (const auto& [region, cells] : m.cells_of_region)
         std::printf("region %-9d %zu %s\n", region, cells, cells == 1 ? "cell" : "cells");
     std::printf("components       %d\n", info.num_components);
@@ -101,7 +139,9 @@ void print_text(const MeshInfo& info) {
                     info.fragments->fragments, info.fragments->ghost_nodes,
                     info.fragments->smallest_share);
     std::printf("least altitude   %.4g\n", m.min_altitude);
-    std::printf("least dihedral   %.4g degrees\n", info.min_dihedral_degrees());
+    // Polyhedra have no part in it.
+    if (m.num_of_kind[polyhedron] < info.num_cells)
+        std::printf("least dihedral   %.4g degrees\n", info.min_dihedral_degrees());
 }
 
 /// Prints what is known about a surface or an image.

@@ -11,6 +11,7 @@
 #include "incise/cutting/exact/cut_plan.h"
 #include "incise/cutting/surfaces/swept_edge.h"
 #include "incise/cutting/tools/separator.h"
+#include "incise/topology/geometry.h"
 
 namespace incise::cutting {
 
@@ -40,6 +41,29 @@ Box box_round(const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edg
     return box;
 }
 
+/// Returns the mean volume of the carriers at rest, m3, of which cells are left. It is the same, to
+/// the bit, for a body that was cut and read from a file: that has the carriers in the same order.
+double mean_carrier_volume(const Mesh& mesh) {
+    const topology::Carriers& carriers = mesh.source_carriers();
+    std::vector<bool> is_counted(carriers.corners.size(), false);
+    double volume = 0.0;
+    std::size_t count = 0;
+    for (const CellId e : mesh.elements()) {
+        const std::int64_t row =
+            carriers.is_empty() ? topology::Carriers::whole : carriers.of_cell[e.index()];
+        if (row == topology::Carriers::whole) {
+            volume += topology::rest_volume(mesh, e);
+        } else {
+            const auto i = static_cast<std::size_t>(row);
+            if (is_counted[i]) continue;
+            is_counted[i] = true;
+            volume += topology::signed_volume(carriers.corners[i].kind(), carriers.corners[i]);
+        }
+        ++count;
+    }
+    return count == 0 ? 0.0 : volume / static_cast<double>(count);
+}
+
 }  // namespace
 
 Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions, bool has_loops)
@@ -49,11 +73,10 @@ Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions, bool has_loops
       has_loops_(has_loops || std::ranges::any_of(mesh.elements(), [&](CellId e) {
                      return mesh.kind(e) != topology::CellKind::tetrahedron;
                  })) {
-    constexpr double share_of_cell = 1e-7;
-    double volume = 0.0;
-    for (const CellId e : mesh.elements()) volume += topology::rest_volume(mesh, e);
-    if (mesh.num_elements() > 0)
-        shift_ = share_of_cell * std::cbrt(volume / static_cast<double>(mesh.num_elements()));
+    constexpr double share_of_carrier = 1e-7;
+    const double size = std::cbrt(mean_carrier_volume(mesh));
+    shift_ = share_of_carrier * size;
+    if (has_loops_) opened_.find_all(mesh, size);
 }
 
 void Cutter::follow_motion(const Mesh& mesh, std::span<const Vec3> positions) {

@@ -54,7 +54,8 @@ struct CutId {
 /// finished cut, does not slice thin layers off it.
 class Cutter {
   public:
-    /// Starts without cuts. Cost: O(n).
+    /// Starts without cuts in progress. A body that was cut before, as its source says, has the
+    /// faces that these cuts have opened. Cost: O(n).
     /// @param mesh       the body
     /// @param positions  of its nodes
     /// @param has_loops  true to cut tetrahedra, too, as other cells are

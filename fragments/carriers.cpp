@@ -12,10 +12,11 @@ using topology::Mesh;
 namespace {
 
 bool is_whole(const Mesh& mesh, const FragmentMesh& fragments, CellId e) {
-    return std::ranges::equal(
-        mesh.corners(e), fragments.origins_of(fragments.carrier_of_cell(e)), {},
-        [&](VertexId n) { return mesh.rest_position(n); },
-        [&](NodeId n) { return fragments.rest_position(n); });
+    return !mesh.is_polyhedron(e) &&
+           std::ranges::equal(
+               mesh.corners(e), fragments.origins_of(fragments.carrier_of_cell(e)), {},
+               [&](VertexId n) { return mesh.rest_position(n); },
+               [&](NodeId n) { return fragments.rest_position(n); });
 }
 
 }  // namespace
@@ -27,13 +28,13 @@ Carriers carriers_of(const Mesh& mesh, const FragmentMesh& fragments) {
         carriers.of_cell.push_back(Carriers::whole);
         if (is_whole(mesh, fragments, e)) continue;
         const CarrierId carrier = fragments.carrier_of_cell(e);
-        if (fragments.origins_of(carrier).size() != 4) continue;
         std::int64_t& row = row_of[carrier.index()];
         if (row == Carriers::whole) {
             row = std::ssize(carriers.corners);
-            std::array<Vec3, 4>& corners = carriers.corners.emplace_back();
-            for (std::size_t k = 0; k < 4; ++k)
-                corners[k] = fragments.rest_position(fragments.origins_of(carrier)[k]);
+            std::vector<Vec3> corners;
+            for (const NodeId n : fragments.origins_of(carrier))
+                corners.push_back(fragments.rest_position(n));
+            carriers.corners.emplace_back(fragments.kind_of(carrier), corners);
         }
         carriers.of_cell.back() = row;
     }

@@ -52,10 +52,14 @@ FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<c
     constrain(held);
     const Carriers& source = material.source_carriers();
     const std::vector<NodeId> corners_of_source = add_nodes(material);
+    std::vector<std::size_t> first_corner{0};  // by row
+    for (const auto& corners : source.corners)
+        first_corner.push_back(first_corner.back() + corners.size());
     std::vector<CarrierId> carrier_of_row(source.corners.size());
     for (std::size_t i = 0; i < material.element_capacity(); ++i) {
         const CellId cell(i);
         CarrierId carrier(i);
+        CellKind kind = material.kind(cell);
         std::vector<NodeId> corners;
         for (const VertexId v : material.corners(cell))
             corners.push_back(with_number_of<NodeId>(v));
@@ -63,13 +67,16 @@ FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<c
             const auto row = static_cast<std::size_t>(source.of_cell[i]);
             if (!carrier_of_row[row].is_valid()) carrier_of_row[row] = carrier;
             carrier = carrier_of_row[row];
-            if (carrier == CarrierId(i)) {
-                const auto of_source = std::span(corners_of_source).subspan(4 * row, 4);
+            // A polyhedron that is not the first part has an id of a carrier, and none of its own.
+            if (carrier == CarrierId(i) || material.is_polyhedron(cell)) {
+                const auto of_source = std::span(corners_of_source)
+                                           .subspan(first_corner[row], source.corners[row].size());
                 corners.assign(of_source.begin(), of_source.end());
+                kind = source.corners[row].kind();
             }
             if (material.is_alive(cell)) cells_of_carrier_[carrier].push_back(cell);
         }
-        kinds_.push_back(material.kind(cell));
+        kinds_.push_back(kind);
         regions_.push_back(material.region(cell));
         for (const NodeId n : corners) origins_of_carrier_.push_back(origins_[n.index()]);
         corners_.insert(corners_.end(), corners.begin(), corners.end());
@@ -101,7 +108,7 @@ std::vector<NodeId> FragmentMesh::add_nodes(const Mesh& material) {
     rest_positions_.assign(material.rest_positions().begin(), material.rest_positions().end());
     const std::size_t num_nodes = rest_positions_.size();
     std::vector<Vec3> positions = rest_positions_;
-    for (const std::array<Vec3, 4>& corners : material.source_carriers().corners)
+    for (const topology::CarrierCorners& corners : material.source_carriers().corners)
         positions.insert(positions.end(), corners.begin(), corners.end());
     std::vector<NodeId> nodes = lowest_at_same_position(positions);
     origins_.assign(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(num_nodes));

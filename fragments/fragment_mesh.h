@@ -132,6 +132,8 @@ class FragmentMesh {
     /// Returns the carrier of a fragment: the element that the body had before any cut. A carrier
     /// of the source has the id of its lowest cell.
     CarrierId carrier(ElementId e) const { return carriers_[e.index()]; }
+    /// Returns the kind of a carrier.
+    topology::CellKind kind_of(CarrierId carrier) const { return kinds_[carrier.index()]; }
     /// Returns the carrier of a cell of the material.
     CarrierId carrier_of_cell(CellId cell) const { return carrier_of_cell_[cell.index()]; }
     /// Returns the fragment that carries a living cell of the material.

@@ -147,7 +147,9 @@ PyMesh read_mesh(const py::object& path, const std::string& region_array, bool l
 
 py::object cells_of(const PyMesh& mesh) {
     CellArrays cells(true);
+    cells.of(CellKind::polyhedron) = mesh.data->faces;
     for (std::size_t c = 0; c < mesh.data->num_cells(); ++c) {
+        if (mesh.data->kinds[c] == CellKind::polyhedron) continue;
         const auto corners = mesh.data->cell(c);
         auto& rows = cells.of(mesh.data->kinds[c]);
         rows.insert(rows.end(), corners.begin(), corners.end());
@@ -181,7 +183,8 @@ void register_mesh(py::module_& module) {
         module, "Mesh", R"(A mesh of a body at rest. It does not change.
 
 Cells are tetrahedra (4 corners), hexahedra (8), wedges (6) and pyramids (5), with their corners in
-the order of VTK. Lengths are metres if the mesh is for a World.
+the order of VTK. A mesh of cut() and of read_mesh() can also have polyhedra. Lengths are metres if
+the mesh is for a World.
 
 >>> mesh = incise.Mesh.box([0.2, 0.1, 0.1], [4, 2, 2])
 >>> mesh.points.shape, mesh.cells.shape
@@ -193,7 +196,7 @@ the order of VTK. Lengths are metres if the mesh is for a World.
     type.def(py::init(&mesh_from), py::arg("points"), py::arg("cells"),
              py::arg("regions") = py::none(), R"(points: shape (N, 3).
 cells: whole numbers, shape (M, 4), (M, 5), (M, 6) or (M, 8); of several kinds a dict by kind, with
-    the keys tetrahedron, hexahedron, wedge and pyramid.
+    the keys tetrahedron, hexahedron, wedge and pyramid. Polyhedra come of cut() and read_mesh().
 regions: one whole number a cell, (M,), or a dict as cells; None: all 0. Materials refer to them.
 Raises InputError with all faults of the mesh: cells without volume or turned inside out, indices
 out of range, faces that more than two cells share.)")
@@ -211,7 +214,9 @@ origin: the lowest corner.)")
             "cells", held(&cells_of),
             "Whole numbers, rows of points: shape (M, 4), (M, 5), (M, 6) or (M, 8), a copy. Of\n"
             "several kinds a dict of such arrays with the keys tetrahedron, hexahedron, wedge and\n"
-            "pyramid.")
+            "pyramid. Polyhedra, which cuts leave, are in one list under the key polyhedron: for\n"
+            "each the number of its faces, then for each face the number of its points and its\n"
+            "points.")
         .def_property_readonly(
             "regions", held(&regions_of),
             "The region of each cell, shape (M,), a copy; a dict if cells is one.")

@@ -212,7 +212,9 @@ Raises InputError with all faults of scenario and mesh. What is unusual becomes 
             "The elements as rows of positions, in the order of VTK: int64, shape (M, 4) to (M, "
             "8),\n"
             "a read-only copy. Of a mixed mesh a dict of such arrays by kind: tetrahedron,\n"
-            "hexahedron, wedge, pyramid. The same object until the topology_version changes.")
+            "hexahedron, wedge, pyramid. Polyhedra, which cuts leave, are in one list under the\n"
+            "key polyhedron: for each the number of its faces, then for each face the number of\n"
+            "its nodes and its nodes. The same object until the topology_version changes.")
         .def_property_readonly(
             "regions", &regions,
             "The region of each element, int64, shape (M,), read-only; a dict if cells is one.")

@@ -8,6 +8,7 @@
 
 #include "incise/fragments/carriers.h"
 #include "incise/physics/body/body_arrays.h"
+#include "incise/runner/frame_tetrahedra.h"
 #include "incise/topology/face_triangles.h"
 
 namespace incise::runner {
@@ -154,7 +155,13 @@ void FrameBuilder::add_contact(const physics::Model& model, const std::vector<Ve
 }
 
 io::Frame FrameBuilder::finish() {
-    if (!snapshot_) return std::move(frame_);
+    add_results();
+    return has(scenario::Field::tetrahedra) ? with_tetrahedra(std::move(frame_))
+                                            : std::move(frame_);
+}
+
+void FrameBuilder::add_results() {
+    if (!snapshot_) return;
     const auto results = snapshot_->results(fragments_);
     const auto add = [&](scenario::Field kind, int components, auto value) {
         if (has(kind))
@@ -166,7 +173,6 @@ io::Frame FrameBuilder::finish() {
     add(scenario::Field::stress, 9,
         [](const Result& r) { return Eigen::Matrix<double, 9, 1>(r.cauchy_stress.reshaped()); });
     add(scenario::Field::von_mises, 1, [](const Result& r) { return von_mises(r.cauchy_stress); });
-    return std::move(frame_);
 }
 
 }  // namespace incise::runner

@@ -23,7 +23,8 @@ using ContactForces = std::vector<std::pair<VertexId, Vec3>>;
 /// material has fibres, it has their directions at rest. node_id and element_id are labels: numbers
 /// in the source, and ids for nodes and elements that cuts have added. A frame of a divided body
 /// has the carriers at rest, so that it can be read back as that body. With Field::physics it has
-/// the arrays of physics::BodyArrays as field data, and the cell array fragment.
+/// the arrays of physics::BodyArrays as field data, and the cell array fragment. With
+/// Field::tetrahedra its polyhedra are divided: see with_tetrahedra().
 ///
 /// The constructor copies the state of the model, which is fast. finish() then computes the fields
 /// of elements.
@@ -45,6 +46,7 @@ class FrameBuilder {
   private:
     bool has(scenario::Field field) const;
     void add_physics(const physics::Model& model);
+    void add_results();
     void add_contact(const physics::Model& model, const std::vector<VertexId>& nodes,
                      const ContactForces& forces);
 

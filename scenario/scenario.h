@@ -170,7 +170,8 @@ struct ToolSpec {
 };
 
 /// The fields that a frame can hold in addition to points, rest positions, ids and regions. The
-/// last one, which has a key of its own, stands for the arrays of physics::BodyArrays.
+/// last two have keys of their own. They stand for the arrays of physics::BodyArrays, and for
+/// tetrahedra in place of polyhedra.
 enum class Field {
     displacement,
     velocity,
@@ -180,7 +181,8 @@ enum class Field {
     von_mises,
     J,
     energy_density,
-    physics
+    physics,
+    tetrahedra
 };
 
 /// The [output] section.
@@ -225,7 +227,7 @@ struct Scenario {
     std::string text;
 };
 
-/// The names of fields, without the last one, and of compressions in scenarios and frames, indexed
+/// The names of fields, without the last two, and of compressions in scenarios and frames, indexed
 /// by Field and io::Compression.
 inline constexpr std::array<std::string_view, 8> field_names = {
     "displacement", "velocity", "mass", "force", "stress", "von_mises", "J", "energy_density"};

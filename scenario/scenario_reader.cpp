@@ -33,8 +33,9 @@ constexpr Keys contact_keys[] = {"enabled", "friction", "self"};
 constexpr Keys mode_names[] = {"dynamic", "static"};
 constexpr Keys integrator_names[] = {"semi-implicit-euler", "implicit-euler"};
 constexpr Keys precision_names[] = {"double", "single"};
-constexpr Keys output_keys[] = {"interval", "fields", "physics", "compression",
-                                "checkpoint_interval"};
+constexpr Keys output_keys[] = {"interval", "fields",      "physics",
+                                "cells",    "compression", "checkpoint_interval"};
+constexpr Keys frame_cell_names[] = {"polyhedra", "tetrahedra"};
 constexpr Keys expectation_keys[] = {"min", "max"};
 constexpr Keys given_fields[] = {"contact_force", "contact_pressure", "rest_position", "region",
                                  "fibre",         "node_id",          "element_id"};
@@ -323,6 +324,7 @@ OutputSpec read_output(const TableReader& root, double end_time, bool has_frames
     else
         all_fields();
     if (output->flag("physics", false)) spec.fields.push_back(Field::physics);
+    if (output->choice("cells", {frame_cell_names}) == 1) spec.fields.push_back(Field::tetrahedra);
     if (const auto index = output->choice("compression", {compression_names}))
         spec.compression = static_cast<io::Compression>(*index);
     spec.checkpoint_interval =

@@ -18,7 +18,8 @@ double thinness(const topology::Mesh& mesh, CellId e) {
     if (carriers.is_empty() || carriers.of_cell[e.index()] == topology::Carriers::whole)
         for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.rest_position(mesh.corners(e)[k]);
     else
-        x = carriers.corners[static_cast<std::size_t>(carriers.of_cell[e.index()])];
+        std::ranges::copy(carriers.corners[static_cast<std::size_t>(carriers.of_cell[e.index()])],
+                          x.begin());
     double longest = 0.0;
     for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t l = 0; l < k; ++l) longest = std::max(longest, (x[k] - x[l]).norm());

@@ -12,9 +12,11 @@ namespace incise::topology {
 
 /// Returns why the carriers cannot be those of the cells, with a remedy. Empty if they can be.
 ///
-/// Each row must have a tetrahedron of positive volume. A cell must be a tetrahedron inside its
-/// carrier. Cells of a carrier must have one region, and together no more volume than the carrier.
-/// Carriers of cells that share a face must share its corners, with equal positions.
+/// Each row must have a cell of positive volume. A part must be a polyhedron, or a tetrahedron of a
+/// tetrahedron, and inside its carrier. Cells of a carrier must have one region, and together no
+/// more volume than the carrier. A polyhedron must have a positive volume and plane faces, within
+/// what cuts leave. Carriers of cells that share a face must share three corners or more, with
+/// equal positions.
 /// @pre  the lists of `data` are sound, except for the carriers
 /// @param shared_faces  all faces between the cells
 /// Cost: O(n).

@@ -279,9 +279,8 @@ class ComplexReader {
         data_.add_cell(cell.kind, cell.corners, cell.info.region);
         data_.carriers.of_cell.push_back(Carriers::whole);
         if (!cell.info.carrier) return;
-        std::array<double, 12> key{};
-        for (std::size_t k = 0; k < key.size(); ++k)
-            key[k] = (*cell.info.carrier)[k / 3][static_cast<Eigen::Index>(k % 3)];
+        std::vector<double> key{static_cast<double>(cell.info.carrier->kind())};
+        for (const Vec3& x : *cell.info.carrier) key.insert(key.end(), x.begin(), x.end());
         auto& rows = data_.carriers.corners;
         const auto [row, is_new] = rows_.try_emplace(key, std::ssize(rows));
         if (is_new) rows.push_back(*cell.info.carrier);
@@ -350,7 +349,7 @@ class ComplexReader {
     std::unordered_map<ConstHandle, std::size_t> cell_of_;
     std::vector<Cell> cells_;
     MeshData data_;
-    std::map<std::array<double, 12>, std::int64_t> rows_;  // of carriers, by their corners
+    std::map<std::vector<double>, std::int64_t> rows_;  // of carriers, by their corners
     std::vector<SharedFace> shared_;
 };
 
@@ -388,7 +387,8 @@ void write_cmap_attribute_node(boost::property_tree::ptree& node, const ComplexC
     std::ostringstream text;
     text.precision(std::numeric_limits<double>::max_digits10);
     text << cell.id.value << ' ' << cell.region << ' ' << cell.first_edge[0].value << ' '
-         << cell.first_edge[1].value << ' ' << (cell.carrier ? 1 : 0);
+         << cell.first_edge[1].value << ' '
+         << (cell.carrier ? 1 + static_cast<int>(cell.carrier->kind()) : 0);
     if (cell.carrier)
         for (const Vec3& x : *cell.carrier) text << ' ' << x[0] << ' ' << x[1] << ' ' << x[2];
     node.add("v", text.str());
@@ -409,12 +409,15 @@ void read_cmap_attribute_node(const boost::property_tree::ptree::value_type& nod
 void read_cmap_attribute_node(const boost::property_tree::ptree::value_type& node,
                               ComplexCell& cell) {
     std::istringstream text(node.second.data());
-    bool has_carrier = false;
+    int carrier = 0;  // 0 for none, else its kind, from 1
     bool is_read = read_numbers(text, cell.id.value, cell.region, cell.first_edge[0].value,
-                                cell.first_edge[1].value, has_carrier);
-    if (is_read && has_carrier)
-        for (Vec3& x : cell.carrier.emplace())
+                                cell.first_edge[1].value, carrier) &&
+                   carrier >= 0 && carrier <= num_cell_kinds;
+    if (is_read && carrier > 0) {
+        const std::vector<Vec3> zeros(max_corners, Vec3::Zero());
+        for (Vec3& x : cell.carrier.emplace(static_cast<CellKind>(carrier - 1), zeros))
             is_read = is_read && read_numbers(text, x[0], x[1], x[2]);
+    }
     if (!is_read) refuse_attribute(node.second.data());
 }
 

@@ -38,10 +38,9 @@ struct ComplexCell {
     /// The ends of the first dart of the first face, in the order of cell_kind.h: it gives all
     /// corners their places. If the volume has no such dart, any fitting order is taken.
     std::array<VertexId, 2> first_edge = {};
-    /// The rest positions of the corners of the tetrahedron that the cell is a part of, m; none for
-    /// a cell that is whole, and for one that is no tetrahedron. Cells with the same corners here
-    /// are parts of one carrier. See Carriers.
-    std::optional<std::array<Vec3, 4>> carrier = {};
+    /// The cell that this one is a part of; none for a cell that is whole. Cells with the same
+    /// corners here are parts of one carrier. See Carriers.
+    std::optional<CarrierCorners> carrier = {};
     bool operator==(const ComplexCell&) const = default;
 };
 

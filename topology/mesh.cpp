@@ -184,11 +184,15 @@ void Mesh::glue(FaceId a, FaceId b) {
     assert(!neighbor(a).is_valid() && !neighbor(b).is_valid());
     set_neighbor(a, b);
     set_neighbor(b, a);
-    for (const FaceId f : {a, b})
-        if (is_polyhedron(f.cell))
-            polyhedra_.at(f.cell).shape.set_inside(f.face, true);
-        else
-            inside_faces_[f.cell.index()] |= static_cast<std::uint8_t>(1 << f.face);
+    set_inside(a);
+    set_inside(b);
+}
+
+void Mesh::set_inside(FaceId f) {
+    if (is_polyhedron(f.cell))
+        polyhedra_.at(f.cell).shape.set_inside(f.face, true);
+    else
+        inside_faces_[f.cell.index()] |= static_cast<std::uint8_t>(1 << f.face);
 }
 
 void Mesh::unglue(FaceId a) {
@@ -296,13 +300,11 @@ MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions,
         data.offsets.push_back(data.corners.size());
         data.regions.push_back(mesh.region(e));
         if (elements) elements->push_back(e);
-        std::int32_t cut_faces = 0;
-        for (int f = 0; f < std::min(mesh.num_faces(e), max_cut_faces); ++f)
-            if (mesh.is_on_cut({e, f})) cut_faces |= 1 << f;
-        if (cut_faces == 0 && data.cut_faces.empty()) continue;
-        data.cut_faces.resize(data.num_cells());
-        data.cut_faces.back() = cut_faces;
+        for (int f = 0; f < mesh.num_faces(e); ++f)
+            if (mesh.is_on_cut({e, f})) data.set_on_cut(data.num_cells() - 1, f);
     }
+    if (!data.cut_faces.empty()) data.cut_faces.resize(data.num_cells());
+    for (auto& further : data.further_cut_faces) further.resize(data.num_cells());
     return data;
 }
 

@@ -94,7 +94,8 @@ class Mesh {
     }
     /// Returns the volume of a polyhedron at rest, m3: see rest_volume().
     double rest_volume_of_polyhedron(CellId e) const;
-    /// True if the cell has a shape of its own, which edits have made.
+    /// True if the cell has a shape of its own, which edits have made, here or before the source
+    /// was written.
     bool is_polyhedron(CellId e) const { return kinds_[e.index()] == CellKind::polyhedron; }
     /// Returns which corner of `e` the node is; -1 if it is none.
     int corner_of(CellId e, VertexId n) const;
@@ -166,6 +167,7 @@ class Mesh {
     /// Joins two faces, which makes them inside for ever: see was_inside().
     void glue(FaceId a, FaceId b);
     void unglue(FaceId a);
+    void set_inside(FaceId f);
     void set_neighbor(FaceId f, FaceId other) {
         (is_polyhedron(f.cell)
              ? polyhedra_.at(f.cell).neighbors[static_cast<std::size_t>(f.face)]

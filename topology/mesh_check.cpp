@@ -16,6 +16,7 @@
 #include "incise/topology/flat_cell.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/mesh_repair.h"
+#include "incise/topology/polyhedron_check.h"
 
 namespace incise::topology {
 
@@ -53,6 +54,46 @@ class Complaints {
     std::map<std::string, std::size_t> counts_;
 };
 
+/// Returns an error of MeshData::cut_faces of a cell; empty if there is none.
+std::string fault_of_cut_faces(const MeshData& data, std::size_t c, int num_faces) {
+    int first = 0;  // face of the list
+    const auto fault = [&](std::int32_t faces) -> std::string {
+        const int count = std::clamp(num_faces - first, 0, max_cut_faces);
+        if (faces >= 0 && faces >> count == 0) return "";
+        const std::string name = "cut_faces" + (first == 0 ? "" : "_" + std::to_string(first));
+        return data.cell_name(c) + " has the " + name + " " + std::to_string(faces) +
+               ", which must be one bit for each of its " + std::to_string(num_faces) + " faces" +
+               (first == 0 ? "" : " from face " + std::to_string(first) + " on") +
+               "; write the file again, or leave out its cell array '" + name + "'";
+    };
+    std::string found = data.cut_faces.empty() ? "" : fault(data.cut_faces[c]);
+    for (const auto& further : data.further_cut_faces) {
+        first += max_cut_faces;
+        if (found.empty()) found = fault(further[c]);
+    }
+    return found;
+}
+
+/// Returns the error of polyhedra without carriers; empty if all have one.
+std::string fault_of_polyhedra_alone(const MeshData& data) {
+    const auto is_alone = [&](std::size_t c) {
+        return data.kinds[c] == CellKind::polyhedron &&
+               (c >= data.carriers.of_cell.size() || data.carriers.of_cell[c] == Carriers::whole);
+    };
+    std::size_t first = 0, count = 0;
+    for (std::size_t c = data.num_cells(); c-- > 0;)
+        if (is_alone(c)) {
+            first = c;
+            ++count;
+        }
+    if (count == 0) return "";
+    return data.cell_name(first) +
+           (count == 1 ? "" : " and " + std::to_string(count - 1) + " more") +
+           " without a carrier: forces need the tetrahedron, hexahedron, wedge or pyramid that a "
+           "polyhedron is a part of, and only .vtu files of Incise name it; use such a file, or "
+           "divide the polyhedra into tetrahedra in the program that made the file";
+}
+
 /// Returns an error of the lists themselves; empty if all cells can be read.
 std::string fault_of_lists(const MeshData& data) {
     const std::size_t num_cells = data.kinds.size();
@@ -65,9 +106,13 @@ std::string fault_of_lists(const MeshData& data) {
     if (data.regions.size() != num_cells)
         return "regions has " + std::to_string(data.regions.size()) + " entries for " +
                std::to_string(num_cells) + " cells";
-    if (!is_one_each(data.cut_faces.size(), num_cells))
-        return "cut_faces has " + std::to_string(data.cut_faces.size()) + " entries for " +
-               std::to_string(num_cells) + " cells";
+    for (std::size_t k = 0; k <= data.further_cut_faces.size(); ++k)
+        if (const auto& list = k == 0 ? data.cut_faces : data.further_cut_faces[k - 1];
+            !(list.size() == num_cells || (k == 0 && list.empty())))
+            return (k == 0 ? "cut_faces has "
+                           : "list " + std::to_string(k - 1) + " of further_cut_faces has ") +
+                   std::to_string(list.size()) + " entries for " + std::to_string(num_cells) +
+                   " cells";
     if (!is_one_each(data.welded_to.size(), data.points.size()))
         return "welded_to has " + std::to_string(data.welded_to.size()) + " entries for " +
                std::to_string(data.points.size()) + " points";
@@ -79,25 +124,30 @@ std::string fault_of_lists(const MeshData& data) {
         return "offsets has to begin with 0 and to end with the number of corners, " +
                std::to_string(data.corners.size());
     for (std::size_t c = 0; c < num_cells; ++c) {
-        if (static_cast<std::size_t>(data.kinds[c]) >= num_cell_kinds)
-            return "cell " + std::to_string(c) +
-                   (data.kinds[c] == CellKind::polyhedron
-                        ? " is a polyhedron, which no mesh can begin with: polyhedra come of cuts"
-                        : " is of no kind that is known");
+        if (static_cast<std::size_t>(data.kinds[c]) > num_cell_kinds)
+            return "cell " + std::to_string(c) + " is of no kind that is known";
         const CellTraits& t = traits(data.kinds[c]);
-        if (data.offsets[c + 1] != data.offsets[c] + static_cast<std::size_t>(t.num_corners))
+        if (data.kinds[c] == CellKind::polyhedron) {
+            if (data.offsets[c + 1] < data.offsets[c] || data.offsets[c + 1] > data.corners.size())
+                return "cell " + std::to_string(c) + " (polyhedron) has offsets out of range";
+        } else if (data.offsets[c + 1] !=
+                   data.offsets[c] + static_cast<std::size_t>(t.num_corners)) {
             return "cell " + std::to_string(c) + " (" + t.name + ") needs " +
                    std::to_string(t.num_corners) + " corners, and offsets gives it another number";
-        if (!data.cut_faces.empty() && data.cut_faces[c] >> t.num_faces != 0)
-            return data.cell_name(c) + " has the cut_faces " + std::to_string(data.cut_faces[c]) +
-                   ", which must be one bit for each of its " + std::to_string(t.num_faces) +
-                   " faces; write the file again, or leave out its cell array 'cut_faces'";
+        }
     }
+    if (std::string fault = fault_of_polyhedra_alone(data); !fault.empty()) return fault;
+    if (std::string fault = fault_of_face_lists(data); !fault.empty()) return fault;
+    const SourceFaces faces(data);
+    for (std::size_t c = 0; c < num_cells; ++c)
+        if (std::string fault = fault_of_cut_faces(data, c, faces.num_faces(c)); !fault.empty())
+            return fault;
     return "";
 }
 
 /// Returns the advice for a cell with a repeated corner: to write it as the kind that it is.
 std::string advice_of_collapsed(const MeshData& data, std::size_t c) {
+    if (data.kinds[c] == CellKind::polyhedron) return "; remove the cell";
     const auto cell = collapsed_cell(data.kinds[c], data.cell(c));
     if (!cell) return "; remove the cell";
     const bool is_numbered_in_file = !data.source_points.empty();
@@ -151,6 +201,15 @@ std::optional<std::string> advice_of_order(CellKind kind, std::span<const Vec3> 
     return text + " (counted from 0)";
 }
 
+/// Returns false if it complains: the polyhedron is no ball. What its volume may be depends on its
+/// carrier: see fault_of_carriers().
+bool check_polyhedron(const MeshData& data, const SourceFaces& faces, std::size_t c,
+                      Complaints& complaints) {
+    const std::string fault = fault_of_polyhedron(data, faces, c);
+    if (!fault.empty()) complaints.add("polyhedra that are no balls", fault);
+    return fault.empty();
+}
+
 /// Returns false if it complains: the cell has no positive volume, or is turned inside out at a
 /// corner.
 bool check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
@@ -198,7 +257,8 @@ bool check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
     return false;
 }
 
-/// A face with its points in descending order, for the search of equal faces.
+/// A face with its points in descending order, for the search of equal faces. Of a face with more
+/// corners the fourth number stands for all points but the highest three: see sorted_faces().
 struct FaceKey {
     std::array<std::int64_t, 4> points{-1, -1, -1, -1};
     SourceFace face;
@@ -207,19 +267,28 @@ struct FaceKey {
 
 /// Returns all faces of usable cells, sorted so that faces with the same points follow each other.
 /// Faces with the same points are in the order of their cells.
-std::vector<FaceKey> sorted_faces(const MeshData& data, const std::vector<std::uint8_t>& usable) {
+std::vector<FaceKey> sorted_faces(const MeshData& data, const SourceFaces& faces,
+                                  const std::vector<std::uint8_t>& usable) {
     std::vector<FaceKey> keys;
     keys.reserve(4 * data.num_cells());
+    std::map<std::vector<std::int64_t>, std::int64_t> numbers;  // of the other points, from -2 down
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
         if (!usable[c]) continue;
-        const CellTraits& t = traits(data.kinds[c]);
-        for (int f = 0; f < t.num_faces; ++f) {
+        for (int f = 0; f < faces.num_faces(c); ++f) {
             FaceKey key;
             key.face = {c, f};
-            const auto face = t.face(f);
-            for (std::size_t p = 0; p < face.size(); ++p)
-                key.points[p] = data.cell(c)[static_cast<std::size_t>(face[p])];
-            std::ranges::sort(key.points, std::greater{});
+            if (const int size = faces.size({c, f}); size <= max_face_corners) {
+                for (int p = 0; p < size; ++p)
+                    key.points[static_cast<std::size_t>(p)] = faces.point({c, f}, p);
+                std::ranges::sort(key.points, std::greater{});
+            } else {
+                std::vector<std::int64_t> points = faces.points({c, f});
+                std::ranges::sort(points, std::greater{});
+                std::copy_n(points.begin(), 3, key.points.begin());
+                points.erase(points.begin(), points.begin() + 3);
+                key.points[3] =
+                    numbers.try_emplace(std::move(points), -2 - std::ssize(numbers)).first->second;
+            }
             keys.push_back(key);
         }
     }
@@ -256,11 +325,6 @@ std::string cell_numbers(const MeshData& data, std::span<const FaceKey> faces) {
            ")";
 }
 
-std::int64_t face_point(const MeshData& data, SourceFace f, std::size_t position) {
-    const auto face = traits(data.kinds[f.cell]).face(f.face);
-    return data.cell(f.cell)[static_cast<std::size_t>(face[position % face.size()])];
-}
-
 bool same_points(const MeshData& data, std::size_t a, std::size_t b) {
     if (data.kinds[a] != data.kinds[b]) return false;
     std::vector<std::int64_t> x(data.cell(a).begin(), data.cell(a).end());
@@ -270,27 +334,33 @@ bool same_points(const MeshData& data, std::size_t a, std::size_t b) {
     return x == y;
 }
 
+/// True if two cells have the same nodes, so that one of them is too much. Flat polyhedra on both
+/// sides of a face can have them, too, and do not overlap.
+bool are_duplicates(const MeshData& data, std::size_t a, std::size_t b) {
+    return data.kinds[a] != CellKind::polyhedron && same_points(data, a, b);
+}
+
 /// @param are_sound  false if one of the cells is turned inside out. That it lies on the wrong side
 ///                   of its neighbours follows from that, and is no error of its own.
-void check_pair(const MeshData& data, SourceFace a, SourceFace b, bool are_sound, MeshCheck& result,
-                Complaints& complaints) {
-    if (same_points(data, a.cell, b.cell)) {
+void check_pair(const MeshData& data, const SourceFaces& faces, SourceFace a, SourceFace b,
+                bool are_sound, MeshCheck& result, Complaints& complaints) {
+    if (are_duplicates(data, a.cell, b.cell)) {
         if (a.face == 0)  // one report for each pair of cells, not for each face
             complaints.add("duplicate cells", data.cell_name(a.cell), " and ",
                            data.cell_name(b.cell), " have the same nodes; remove one of them");
         return;
     }
-    const std::size_t size = traits(data.kinds[a.cell]).face(a.face).size();
-    std::size_t shift = 0;
-    while (face_point(data, b, shift) != face_point(data, a, 0)) ++shift;
+    const int size = faces.size(a);
+    int shift = 0;
+    while (faces.point(b, shift) != faces.point(a, 0)) ++shift;
     bool opposite = true, parallel = true;
-    for (std::size_t p = 0; p < size; ++p) {
-        const std::int64_t point = face_point(data, a, p);
-        opposite = opposite && face_point(data, b, shift + size - p) == point;
-        parallel = parallel && face_point(data, b, shift + p) == point;
+    for (int p = 0; p < size; ++p) {
+        const std::int64_t point = faces.point(a, p);
+        opposite = opposite && faces.point(b, (shift + size - p) % size) == point;
+        parallel = parallel && faces.point(b, (shift + p) % size) == point;
     }
     if (opposite)
-        result.shared_faces.push_back({a, b, static_cast<int>(shift)});
+        result.shared_faces.push_back({a, b, shift});
     else if (!are_sound)
         return;
     else if (parallel)
@@ -300,8 +370,8 @@ void check_pair(const MeshData& data, SourceFace a, SourceFace b, bool are_sound
                        "remove one of them");
     else
         complaints.add("twisted neighbours", data.cell_name(a.cell), " and ",
-                       data.cell_name(b.cell),
-                       " share four nodes but join them in different orders; remesh");
+                       data.cell_name(b.cell), " share ", size == 4 ? "four" : std::to_string(size),
+                       " nodes but join them in different orders; remesh");
 }
 
 }  // namespace
@@ -320,6 +390,7 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
         return result;
     }
 
+    const SourceFaces source_faces(data);
     std::vector<std::uint8_t> used(data.points.size(), 0);
     std::vector<std::uint8_t> usable(data.num_cells(), 0), sound(data.num_cells(), 0);
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
@@ -327,7 +398,9 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
             if (p >= 0 && p < static_cast<std::int64_t>(used.size()))
                 used[static_cast<std::size_t>(p)] = 1;
         usable[c] = corners_are_usable(data, c, errors);
-        sound[c] = usable[c] && check_volume(data, c, errors);
+        sound[c] = usable[c] && (data.kinds[c] == CellKind::polyhedron
+                                     ? check_polyhedron(data, source_faces, c, errors)
+                                     : check_volume(data, c, errors));
     }
     for (std::size_t p = 0; p < data.points.size(); ++p) {
         if (used[p] && !data.points[p].allFinite())
@@ -338,18 +411,27 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
                          " belongs to no cell and is left out");
     }
 
-    const std::vector<FaceKey> faces = sorted_faces(data, usable);
+    std::vector<FaceKey> faces = sorted_faces(data, source_faces, usable);
     for (std::size_t i = 0; i < faces.size();) {
         std::size_t end = i + 1;
         while (end < faces.size() && faces[end].points == faces[i].points) ++end;
-        if (end - i == 2) {
-            const SourceFace a = faces[i].face, b = faces[i + 1].face;
-            check_pair(data, a, b, sound[a.cell] && sound[b.cell], result, errors);
+        const auto same = std::span(faces).subspan(i, end - i);
+        // Faces on cuts stay open, as they do at the front of a cut, where both sides have the same
+        // points.
+        const auto rest = std::ranges::stable_partition(same, [&](const FaceKey& key) {
+            return !data.is_on_cut(key.face.cell, key.face.face);
+        });
+        const std::size_t num_others = rest.size(), num_inner = same.size() - num_others;
+        const std::size_t num_joined = num_inner == 1 && num_others == 1 ? 2 : num_inner;
+        if (num_joined == 2) {
+            const SourceFace a = std::min(same[0].face, same[1].face),
+                             b = std::max(same[0].face, same[1].face);
+            check_pair(data, source_faces, a, b, sound[a.cell] && sound[b.cell], result, errors);
         }
-        if (end - i > 2)
+        if (num_joined > 2)
             errors.add(
                 "faces shared by more than two cells", "cells ",
-                cell_numbers(data, std::span(faces).subspan(i, end - i)),
+                cell_numbers(data, same.first(num_inner)),
                 " all share one face; a face joins two cells at the most: remove the others");
         i = end;
     }

@@ -2,20 +2,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <compare>
 #include <string>
 #include <vector>
 
 #include "incise/topology/mesh_data.h"
+#include "incise/topology/source_faces.h"
 
 namespace incise::topology {
-
-/// A face of a cell of the source.
-struct SourceFace {
-    std::size_t cell = 0;
-    int face = 0;
-    auto operator<=>(const SourceFace&) const = default;
-};
 
 /// Two cells that share a face. `shift` is the position in b's face of the point at position 0 of
 /// a's face.
@@ -45,6 +38,7 @@ struct MeshCheck {
 /// - duplicate cells, and faces that more than two cells share
 /// - neighbours on the same side of their face, or twisted against each other, unless one of them
 ///   is turned inside out, from which this follows
+/// - a polyhedron without a carrier, or whose faces do not bound a ball: see fault_of_polyhedron()
 /// - carriers that cannot be those of the cells: see fault_of_carriers()
 ///
 /// There are warnings about points that no cell uses, and about points at one position that are not

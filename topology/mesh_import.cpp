@@ -53,22 +53,28 @@ class MeshImport {
     MeshImport(const MeshData& data, ImportRules rules)
         : data_(data),
           check_(check(data, rules.advice)),
+          faces_(require_sound(data, check_)),
           keeps_order_(rules.keeps_order || !data.carriers.is_empty()) {
-        if (!check_.errors.empty()) throw InputError(refusal(check_.errors));
         if (rules.shared_faces) check_.shared_faces = std::move(*rules.shared_faces);
     }
 
     BuiltMesh run() {
         order_elements();
         order_nodes();
-        add_rows();
+        list_slots();
         divide_pinched_nodes();
+        add_cells();
         join_faces();
         mesh_.source_carriers_ = data_.carriers;
         return {std::move(mesh_), std::move(check_.warnings)};
     }
 
   private:
+    static const MeshData& require_sound(const MeshData& data, const MeshCheck& check) {
+        if (!check.errors.empty()) throw InputError(refusal(check.errors));
+        return data;
+    }
+
     /// Returns the cells in the order of their ids.
     std::vector<std::size_t> order_of_cells() const {
         if (keeps_order_) {
@@ -120,42 +126,42 @@ class MeshImport {
                 mesh_.label_nodes_[static_cast<std::size_t>(data_.welded_to[p])];
     }
 
-    void add_rows() {
-        std::vector<VertexId> corners;
+    /// Lists the nodes of all corners: a slot for each corner of each element.
+    void list_slots() {
+        slot_begin_.push_back(0);
         for (const std::size_t c : cell_of_element_) {
-            corners.clear();
             for (const std::int64_t p : data_.cell(c))
-                corners.push_back(mesh_.label_nodes_[static_cast<std::size_t>(p)]);
-            mesh_.append_element_row(data_.kinds[c], data_.regions[c], corners);
+                slots_.push_back(mesh_.label_nodes_[static_cast<std::size_t>(p)]);
+            slot_begin_.push_back(slots_.size());
         }
     }
 
+    std::size_t slot_of(std::size_t cell, std::int64_t point) const {
+        const auto corners = data_.cell(cell);
+        return slot_begin_[element_of_cell_[cell].index()] +
+               static_cast<std::size_t>(std::ranges::find(corners, point) - corners.begin());
+    }
     std::size_t corner_slot(SourceFace f, int position) const {
-        const auto face = traits(data_.kinds[f.cell]).face(f.face);
-        const auto size = static_cast<int>(face.size());
-        return mesh_.corner_begin_[element_of_cell_[f.cell].index()] +
-               static_cast<std::size_t>(face[static_cast<std::size_t>((position + size) % size)]);
+        const int size = faces_.size(f);
+        return slot_of(f.cell, faces_.point(f, (position + size) % size));
     }
 
     void divide_pinched_nodes() {
-        DisjointSets sets(mesh_.corners_.size());
-        for (const SharedFace& shared : check_.shared_faces) {
-            const auto size =
-                static_cast<int>(traits(data_.kinds[shared.a.cell]).face(shared.a.face).size());
-            for (int p = 0; p < size; ++p)
+        DisjointSets sets(slots_.size());
+        for (const SharedFace& shared : check_.shared_faces)
+            for (int p = 0; p < faces_.size(shared.a); ++p)
                 sets.join(corner_slot(shared.a, p), corner_slot(shared.b, shared.shift - p));
-        }
         // Slots are in ascending order of elements. The set of the first slot of a node keeps the
         // node.
-        std::vector<std::size_t> first_set(mesh_.rest_positions_.size(), mesh_.corners_.size());
-        std::vector<VertexId> node_of_set(mesh_.corners_.size());
+        std::vector<std::size_t> first_set(mesh_.rest_positions_.size(), slots_.size());
+        std::vector<VertexId> node_of_set(slots_.size());
         std::vector<bool> is_pinched(mesh_.rest_positions_.size(), false);
         std::size_t num_pinched = 0;
-        for (std::size_t slot = 0; slot < mesh_.corners_.size(); ++slot) {
-            const VertexId n = mesh_.corners_[slot];
+        for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
+            const VertexId n = slots_[slot];
             const std::size_t set = sets.find(slot);
             if (!node_of_set[set].is_valid()) {
-                if (first_set[n.index()] == mesh_.corners_.size()) {
+                if (first_set[n.index()] == slots_.size()) {
                     first_set[n.index()] = set;
                     node_of_set[set] = n;
                 } else {
@@ -173,7 +179,7 @@ class MeshImport {
                     is_pinched[n.index()] = true;
                 }
             }
-            mesh_.corners_[slot] = node_of_set[set];
+            slots_[slot] = node_of_set[set];
         }
         if (num_pinched > max_pinches_listed)
             check_.warnings.push_back("and " + std::to_string(num_pinched - max_pinches_listed) +
@@ -186,28 +192,56 @@ class MeshImport {
         std::sort(mesh_.pinched_.begin(), mesh_.pinched_.end());
 
         mesh_.incident_elements_.resize(mesh_.rest_positions_.size());
-        for (std::size_t i = mesh_.num_elements(); i-- > 0;)
-            for (const VertexId n : mesh_.corners(CellId(i)))
-                mesh_.incident_elements_[n.index()] = CellId(i);
+        for (std::size_t i = cell_of_element_.size(); i-- > 0;)
+            for (std::size_t slot = slot_begin_[i]; slot < slot_begin_[i + 1]; ++slot)
+                mesh_.incident_elements_[slots_[slot].index()] = CellId(i);
+    }
+
+    void add_cells() {
+        for (std::size_t i = 0; i < cell_of_element_.size(); ++i) {
+            const std::size_t c = cell_of_element_[i];
+            const bool is_polyhedron = data_.kinds[c] == CellKind::polyhedron;
+            const auto corners = std::span(slots_).subspan(
+                slot_begin_[i], is_polyhedron ? 0 : slot_begin_[i + 1] - slot_begin_[i]);
+            mesh_.append_element_row(data_.kinds[c], data_.regions[c], corners);
+            if (!is_polyhedron) continue;
+            CellShape shape;
+            std::vector<VertexId> face;
+            for (int f = 0; f < faces_.num_faces(c); ++f) {
+                face.clear();
+                for (const std::int64_t p : faces_.points({c, f}))
+                    face.push_back(slots_[slot_of(c, p)]);
+                shape.add_face(face, false);
+            }
+            Mesh::Polyhedron& cell = mesh_.polyhedra_[CellId(i)];
+            shape.append_corners(cell.corners);
+            cell.neighbors.resize(static_cast<std::size_t>(shape.num_faces()));
+            cell.shape = std::move(shape);
+        }
     }
 
     void join_faces() {
         for (const SharedFace& shared : check_.shared_faces)
             mesh_.glue({element_of_cell_[shared.a.cell], shared.a.face},
                        {element_of_cell_[shared.b.cell], shared.b.face});
-        for (std::size_t c = 0; c < data_.cut_faces.size(); ++c)
-            mesh_.inside_faces_[element_of_cell_[c].index()] |=
-                static_cast<std::uint8_t>(data_.cut_faces[c]);
+        if (data_.cut_faces.empty() && data_.further_cut_faces.empty()) return;
+        for (std::size_t c = 0; c < data_.num_cells(); ++c)
+            for (int f = 0; f < faces_.num_faces(c); ++f)
+                if (data_.is_on_cut(c, f)) mesh_.set_inside({element_of_cell_[c], f});
     }
 
     static constexpr std::size_t max_pinches_listed = 5;
 
     const MeshData& data_;
     MeshCheck check_;
+    SourceFaces faces_;
     bool keeps_order_;
     Mesh mesh_;
     std::vector<std::size_t> cell_of_element_;
     std::vector<CellId> element_of_cell_;
+    // By corner of an element, in ascending order of elements, its node; where each element begins.
+    std::vector<VertexId> slots_;
+    std::vector<std::size_t> slot_begin_;
 };
 
 BuiltMesh import_mesh(const MeshData& data, ImportRules rules) {

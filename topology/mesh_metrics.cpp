@@ -63,28 +63,41 @@ void measure_cell(CellKind kind, std::span<const Vec3> corners, MeshMetrics& met
     }
 }
 
-void measure_cells(const MeshData& data, MeshMetrics& metrics) {
+/// Returns the area vector of a face of mesh data.
+Vec3 area_of(const SourceFaces& faces, SourceFace f) {
+    return area_vector(faces.size(f), [&](int p) { return faces.position(f, p); });
+}
+
+void measure_cells(const MeshData& data, const SourceFaces& faces, MeshMetrics& metrics) {
     metrics.box_min.setConstant(std::numeric_limits<double>::infinity());
     metrics.box_max = -metrics.box_min;
     metrics.min_altitude = std::numeric_limits<double>::infinity();
     metrics.min_dihedral_angle = std::numbers::pi;
-    std::array<Vec3, max_corners> points;
+    std::vector<Vec3> points;
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
         const CellKind kind = data.kinds[c];
-        const auto corners = data.cell(c);
-        for (std::size_t k = 0; k < corners.size(); ++k) {
-            points[k] = data.points[static_cast<std::size_t>(corners[k])];
-            metrics.box_min = metrics.box_min.cwiseMin(points[k]);
-            metrics.box_max = metrics.box_max.cwiseMax(points[k]);
+        points.clear();
+        for (const std::int64_t p : data.cell(c)) {
+            points.push_back(data.points[static_cast<std::size_t>(p)]);
+            metrics.box_min = metrics.box_min.cwiseMin(points.back());
+            metrics.box_max = metrics.box_max.cwiseMax(points.back());
         }
         ++metrics.num_of_kind[static_cast<std::size_t>(kind)];
         ++metrics.cells_of_region[data.regions[c]];
-        metrics.volume += signed_volume(kind, {points.data(), corners.size()});
-        measure_cell(kind, {points.data(), corners.size()}, metrics);
+        const double volume = faces.volume(c);
+        metrics.volume += volume;
+        if (kind != CellKind::polyhedron) {
+            measure_cell(kind, points, metrics);
+            continue;
+        }
+        double largest = 0.0;
+        for (int f = 0; f < faces.num_faces(c); ++f)
+            largest = std::max(largest, area_of(faces, {c, f}).norm());
+        metrics.min_altitude = std::min(metrics.min_altitude, 3.0 * volume / largest);
     }
 }
 
-void measure_edges(const MeshData& data, MeshMetrics& metrics) {
+void measure_edges(const MeshData& data, const SourceFaces& faces, MeshMetrics& metrics) {
     std::vector<std::pair<std::int64_t, std::int64_t>> edges;
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
         const CellTraits& cell = traits(data.kinds[c]);
@@ -92,6 +105,10 @@ void measure_edges(const MeshData& data, MeshMetrics& metrics) {
         for (std::size_t e = 0; e < static_cast<std::size_t>(cell.num_edges); ++e)
             edges.push_back(std::minmax({corners[static_cast<std::size_t>(cell.edges[e][0])],
                                          corners[static_cast<std::size_t>(cell.edges[e][1])]}));
+        if (data.kinds[c] != CellKind::polyhedron) continue;
+        for (int f = 0; f < faces.num_faces(c); ++f)
+            for (int p = faces.size({c, f}) - 1, q = 0; q < faces.size({c, f}); p = q++)
+                edges.push_back(std::minmax({faces.point({c, f}, p), faces.point({c, f}, q)}));
     }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -108,20 +125,20 @@ void measure_edges(const MeshData& data, MeshMetrics& metrics) {
     metrics.mean_edge_length = sum / static_cast<double>(edges.size());
 }
 
-double face_area(const MeshData& data, const SourceFace& face) {
-    const auto local = traits(data.kinds[face.cell]).face(face.face);
-    const auto at = [&](std::size_t position) -> const Vec3& {
-        const auto corner = data.cell(face.cell)[static_cast<std::size_t>(local[position])];
-        return data.points[static_cast<std::size_t>(corner)];
+double face_area(const SourceFaces& faces, SourceFace face) {
+    const int size = faces.size(face);
+    if (size > max_face_corners) return area_of(faces, face).norm();
+    const auto triangle = [&](int i, int j, int k) {
+        const Vec3& first = faces.position(face, i);
+        return 0.5 *
+               (faces.position(face, j) - first).cross(faces.position(face, k) - first).norm();
     };
-    const auto triangle = [&](std::size_t i, std::size_t j, std::size_t k) {
-        return 0.5 * (at(j) - at(i)).cross(at(k) - at(i)).norm();
-    };
-    if (local.size() == 3) return triangle(0, 1, 2);
+    if (size == 3) return triangle(0, 1, 2);
     return 0.5 * (triangle(0, 1, 2) + triangle(0, 2, 3) + triangle(0, 1, 3) + triangle(1, 2, 3));
 }
 
-double surface_area(const MeshData& data, const std::vector<SharedFace>& shared_faces) {
+double surface_area(const MeshData& data, const SourceFaces& faces,
+                    const std::vector<SharedFace>& shared_faces) {
     std::vector<SourceFace> shared;
     for (const auto& pair : shared_faces) {
         shared.push_back(pair.a);
@@ -131,12 +148,12 @@ double surface_area(const MeshData& data, const std::vector<SharedFace>& shared_
     double area = 0.0;
     auto next = shared.begin();
     for (std::size_t c = 0; c < data.num_cells(); ++c)
-        for (int f = 0; f < traits(data.kinds[c]).num_faces; ++f) {
+        for (int f = 0; f < faces.num_faces(c); ++f) {
             const SourceFace face{c, f};
             if (next != shared.end() && *next == face)
                 ++next;
             else
-                area += face_area(data, face);
+                area += face_area(faces, face);
         }
     return area;
 }
@@ -210,9 +227,10 @@ MeshMetrics measure(const MeshData& data) {
         throw InputError(text);
     }
     MeshMetrics metrics;
-    measure_cells(data, metrics);
-    measure_edges(data, metrics);
-    metrics.surface_area = surface_area(data, found.shared_faces);
+    const SourceFaces faces(data);
+    measure_cells(data, faces, metrics);
+    measure_edges(data, faces, metrics);
+    metrics.surface_area = surface_area(data, faces, found.shared_faces);
     return metrics;
 }
 

@@ -18,12 +18,13 @@ namespace incise::topology {
 
 /// Measures of a mesh. Lengths are in the unit of the points, angles in radians.
 struct MeshMetrics {
-    std::array<std::size_t, num_cell_kinds> num_of_kind{};  ///< indexed by CellKind
+    std::array<std::size_t, num_cell_kinds + 1> num_of_kind{};  ///< indexed by CellKind
     std::map<int, std::size_t> cells_of_region;
-    /// The sum of signed_volume() over all cells.
+    /// The sum of the volumes of all cells: SourceFaces::volume().
     double volume = 0.0;
     /// The area of all faces that belong to only one cell. The area of a quadrilateral is the mean
-    /// over its two divisions into triangles, which is exact for a flat one.
+    /// over its two divisions into triangles, which is exact for a flat one. For a face of more
+    /// corners it is the area of the projection onto its mean plane.
     double surface_area = 0.0;
     /// The bounding box of the points that cells use.
     Vec3 box_min = Vec3::Zero(), box_max = Vec3::Zero();
@@ -32,10 +33,11 @@ struct MeshMetrics {
     /// The least altitude of all cells. At each corner where three edges of a cell meet, the
     /// altitude is the distance from the end of one edge to the plane of the two others. For a
     /// tetrahedron this is the usual altitude, for a brick the thickness. The apex of a pyramid,
-    /// where four edges meet, is not such a corner.
+    /// where four edges meet, is not such a corner. For a polyhedron it is three times the volume
+    /// over the area of its largest face.
     double min_altitude = 0.0;
     /// The least angle between two faces of a cell at their common edge, measured at the ends of
-    /// the edge.
+    /// the edge. Polyhedra have no part in it.
     double min_dihedral_angle = 0.0;
 };
 

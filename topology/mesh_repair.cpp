@@ -15,6 +15,7 @@
 
 #include "incise/topology/flat_cell.h"
 #include "incise/topology/geometry.h"
+#include "incise/topology/source_faces.h"
 #include "incise/topology/weld_outlook.h"
 
 namespace incise::topology {
@@ -29,7 +30,14 @@ const Vec3& position_of(const MeshData& data, std::int64_t point) {
 /// zero, so that only equal positions count as one.
 double shortest_edge(const MeshData& data) {
     double shortest = std::numeric_limits<double>::infinity();
+    const SourceFaces faces(data);
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
+        if (data.kinds[c] == CellKind::polyhedron)
+            for (int f = 0; f < faces.num_faces(c); ++f)
+                for (int p = faces.size({c, f}) - 1, q = 0; q < faces.size({c, f}); p = q++)
+                    shortest = std::min(
+                        shortest,
+                        (faces.position({c, f}, q) - faces.position({c, f}, p)).squaredNorm());
         const CellTraits& cell = traits(data.kinds[c]);
         const auto corners = data.cell(c);
         for (std::size_t e = 0; e < static_cast<std::size_t>(cell.num_edges); ++e) {
@@ -214,9 +222,26 @@ void move_corners_of_carriers(MeshData& data, const std::vector<std::int64_t>& l
     for (std::size_t p = 0; p < lowest.size(); ++p)
         if (const Vec3& to = position_of(data, lowest[p]); to != data.points[p])
             moved.emplace(key(data.points[p]), to);
-    for (std::array<Vec3, 4>& corners : data.carriers.corners)
+    for (CarrierCorners& corners : data.carriers.corners)
         for (Vec3& x : corners)
             if (const auto it = moved.find(key(x)); it != moved.end()) x = it->second;
+}
+
+/// Lets faces on cuts be joined where two of them now have the same points.
+void close_cuts(MeshData& data) {
+    if (data.cut_faces.empty()) return;
+    const SourceFaces faces(data);
+    std::map<std::vector<std::int64_t>, SourceFace> known;
+    for (std::size_t c = 0; c < data.num_cells(); ++c)
+        for (int f = 0; f < faces.num_faces(c); ++f) {
+            if (!data.is_on_cut(c, f)) continue;
+            std::vector<std::int64_t> points = faces.points({c, f});
+            std::ranges::sort(points);
+            const auto [other, is_first] = known.try_emplace(points, SourceFace{c, f});
+            if (is_first) continue;
+            data.set_on_cut(c, f, false);
+            data.set_on_cut(other->second.cell, other->second.face, false);
+        }
 }
 
 }  // namespace
@@ -228,10 +253,15 @@ std::size_t weld(MeshData& data) {
     while (true) {
         const auto lowest = lowest_at_position(data, weld_tolerance);
         const std::size_t num_found = doubles(lowest).size();
-        if (num_found == 0) return num_joined;
+        if (num_found == 0) {
+            close_cuts(data);
+            return num_joined;
+        }
         num_joined += num_found;
         move_corners_of_carriers(data, lowest);
-        for (std::int64_t& corner : data.corners) corner = lowest[static_cast<std::size_t>(corner)];
+        const auto join = [&](std::int64_t& p) { p = lowest[static_cast<std::size_t>(p)]; };
+        std::ranges::for_each(data.corners, join);
+        data.for_each_point_of_faces(join);
         if (data.welded_to.empty()) {
             data.welded_to = lowest;
         } else {
@@ -260,38 +290,79 @@ void drop_welded_points(MeshData& data) {
     }
     data.points.resize(num_kept);
     if (!data.source_points.empty()) data.source_points.resize(num_kept);
-    for (std::int64_t& corner : data.corners) corner = new_number[static_cast<std::size_t>(corner)];
+    const auto renumber = [&](std::int64_t& p) { p = new_number[static_cast<std::size_t>(p)]; };
+    std::ranges::for_each(data.corners, renumber);
+    data.for_each_point_of_faces(renumber);
     data.welded_to.clear();
 }
 
+namespace {
+
+/// Reverses the direction of all faces of polyhedra.
+void turn_polyhedra(MeshData& data) {
+    data.for_each_polyhedron([&](std::size_t, std::size_t at) {
+        const std::int64_t count = data.faces[at++];
+        for (std::int64_t f = 0; f < count; ++f) {
+            const auto size = static_cast<std::ptrdiff_t>(data.faces[at++]);
+            const auto begin = data.faces.begin() + static_cast<std::ptrdiff_t>(at);
+            std::reverse(begin + 1, begin + size);
+            at += static_cast<std::size_t>(size);
+        }
+    });
+}
+
+/// Turns the carriers of each kind of which every one has negative volume.
+void turn_carriers(Carriers& carriers) {
+    std::array<bool, num_cell_kinds> has_inverted{}, has_sound{};
+    for (const CarrierCorners& corners : carriers.corners) {
+        const auto kind = static_cast<std::size_t>(corners.kind());
+        (signed_volume(corners.kind(), corners) < 0.0 ? has_inverted : has_sound)[kind] = true;
+    }
+    for (CarrierCorners& corners : carriers.corners) {
+        const auto kind = static_cast<std::size_t>(corners.kind());
+        if (!has_inverted[kind] || has_sound[kind]) continue;
+        const CarrierCorners before = corners;
+        const auto& mirrored = traits(corners.kind()).mirrored;
+        for (std::size_t k = 0; k < corners.size(); ++k)
+            corners[k] = before[static_cast<std::size_t>(mirrored[k])];
+    }
+}
+
+}  // namespace
+
 TurnedCells turn_inverted_cells(MeshData& data) {
     std::array<Vec3, max_corners> x;
-    std::array<std::size_t, num_cell_kinds> num_inverted{};
-    std::array<bool, num_cell_kinds> has_sound{};
+    std::array<std::size_t, num_cell_kinds + 1> num_inverted{};
+    std::array<bool, num_cell_kinds + 1> has_sound{};
+    const SourceFaces faces(data);
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
-        const auto corners = data.cell(c);
-        for (std::size_t k = 0; k < corners.size(); ++k) x[k] = position_of(data, corners[k]);
-        const std::span<const Vec3> cell{x.data(), corners.size()};
-        const double volume = signed_volume(data.kinds[c], cell);
-        if (is_flat_to_rounding(data.kinds[c], cell, volume)) continue;
         const auto kind = static_cast<std::size_t>(data.kinds[c]);
+        const double volume = faces.volume(c);
+        if (data.kinds[c] != CellKind::polyhedron) {
+            const auto corners = data.cell(c);
+            for (std::size_t k = 0; k < corners.size(); ++k) x[k] = position_of(data, corners[k]);
+            if (is_flat_to_rounding(data.kinds[c], {x.data(), corners.size()}, volume)) continue;
+        }
         if (volume < 0.0)
             ++num_inverted[kind];
         else
             has_sound[kind] = true;
     }
     TurnedCells turned;
-    std::array<bool, num_cell_kinds> is_turned{};
-    for (std::size_t kind = 0; kind < num_cell_kinds; ++kind) {
+    std::array<bool, num_cell_kinds + 1> is_turned{};
+    for (std::size_t kind = 0; kind <= num_cell_kinds; ++kind) {
         if (num_inverted[kind] == 0 || has_sound[kind]) continue;
         is_turned[kind] = true;
         turned.kinds.push_back(static_cast<CellKind>(kind));
         turned.num_cells += num_inverted[kind];
     }
+    turn_carriers(data.carriers);
     if (turned.kinds.empty()) return turned;
     std::array<std::int64_t, max_corners> old{};
     for (std::size_t c = 0; c < data.num_cells(); ++c) {
-        if (!is_turned[static_cast<std::size_t>(data.kinds[c])]) continue;
+        if (!is_turned[static_cast<std::size_t>(data.kinds[c])] ||
+            data.kinds[c] == CellKind::polyhedron)
+            continue;
         std::ranges::copy(data.cell(c), old.begin());
         const auto& mirrored = traits(data.kinds[c]).mirrored;
         for (std::size_t k = 0; k < data.cell(c).size(); ++k)
@@ -299,13 +370,7 @@ TurnedCells turn_inverted_cells(MeshData& data) {
         if (!data.cut_faces.empty())
             data.cut_faces[c] = mirrored_faces(data.kinds[c], data.cut_faces[c]);
     }
-    if (!is_turned[static_cast<std::size_t>(CellKind::tetrahedron)]) return turned;
-    const auto& mirrored = traits(CellKind::tetrahedron).mirrored;
-    for (std::array<Vec3, 4>& corners : data.carriers.corners) {
-        const std::array<Vec3, 4> before = corners;
-        for (std::size_t k = 0; k < corners.size(); ++k)
-            corners[k] = before[static_cast<std::size_t>(mirrored[k])];
-    }
+    if (is_turned[static_cast<std::size_t>(CellKind::polyhedron)]) turn_polyhedra(data);
     return turned;
 }
 

@@ -30,8 +30,9 @@ std::optional<std::string> coincidence_warning(const MeshData& data, const WeldA
 
 /// Joins points at one position: cells then use the one with the lowest number. Returns how many
 /// points were joined to a lower one. No point is removed or renumbered; MeshData::welded_to names
-/// the point that replaced each point. Corners of carriers move with the points at them. Welding
-/// can make cells invalid: use check() afterwards.
+/// the point that replaced each point. Corners of carriers move with the points at them. Faces on
+/// cuts that then have the same points are on a cut no longer. Welding can make cells invalid: use
+/// check() afterwards.
 /// @pre  corners are valid point numbers, and all coordinates are finite
 std::size_t weld(MeshData& data);
 
@@ -47,10 +48,11 @@ struct TurnedCells {
     std::size_t num_cells = 0;    ///< cells of these kinds with negative volume
 };
 
-/// Reverses the corner order of all cells of a kind, and of their carriers, if every cell of that
-/// kind has negative volume. Cells whose volume is zero to rounding are ignored in this test, but
-/// are reversed too. A kind is judged by itself, since programs differ in their order of the
-/// corners of a single kind, such as wedges.
+/// Reverses the corner order of all cells of a kind if every cell of that kind has negative volume.
+/// Cells whose volume is zero to rounding are ignored in this test, but are reversed too. Of
+/// polyhedra the faces are reversed. The same holds for carriers, by their own volumes. A kind is
+/// judged by itself, since programs differ in their order of the corners of a single kind, such as
+/// wedges.
 /// @pre  corners are valid point numbers, and all coordinates are finite
 TurnedCells turn_inverted_cells(MeshData& data);
 

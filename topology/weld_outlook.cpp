@@ -19,19 +19,17 @@ MeshCheck check_cells(MeshData data) {
     return check(data);
 }
 
-std::vector<std::size_t> points_of(const MeshData& data, SourceFace f) {
-    std::vector<std::size_t> points;
-    for (const int corner : traits(data.kinds[f.cell]).face(f.face))
-        points.push_back(
-            static_cast<std::size_t>(data.cell(f.cell)[static_cast<std::size_t>(corner)]));
-    return points;
+std::vector<std::size_t> points_of(const SourceFaces& faces, SourceFace f) {
+    const std::vector<std::int64_t> numbers = faces.points(f);
+    return {numbers.begin(), numbers.end()};
 }
 
 /// Returns the faces that belong to only one cell, in ascending order.
-std::vector<SourceFace> boundary_of(const MeshData& data, const MeshCheck& checked) {
+std::vector<SourceFace> boundary_of(const MeshData& data, const SourceFaces& faces,
+                                    const MeshCheck& checked) {
     std::vector<SourceFace> all, inner, boundary;
     for (std::size_t c = 0; c < data.num_cells(); ++c)
-        for (int f = 0; f < traits(data.kinds[c]).num_faces; ++f) all.push_back({c, f});
+        for (int f = 0; f < faces.num_faces(c); ++f) all.push_back({c, f});
     for (const SharedFace& shared : checked.shared_faces)
         inner.insert(inner.end(), {shared.a, shared.b});
     std::ranges::sort(inner);
@@ -42,10 +40,12 @@ std::vector<SourceFace> boundary_of(const MeshData& data, const MeshCheck& check
 }  // namespace
 
 std::optional<UnlikeFaces> find_unlike_faces(const MeshData& data, const MeshCheck& checked) {
-    const auto boundary = boundary_of(data, checked);
+    const SourceFaces faces(data);
+    auto boundary = boundary_of(data, faces, checked);
+    std::erase_if(boundary, [&](SourceFace f) { return data.is_on_cut(f.cell, f.face); });
     std::map<std::array<std::size_t, 3>, std::size_t> face_of_corners;  // index in `boundary`
     for (std::size_t i = 0; i < boundary.size(); ++i) {
-        auto points = points_of(data, boundary[i]);
+        auto points = points_of(faces, boundary[i]);
         if (points.size() != 4) continue;
         std::ranges::sort(points);
         for (std::size_t left_out = 0; left_out < 4; ++left_out) {
@@ -56,7 +56,7 @@ std::optional<UnlikeFaces> find_unlike_faces(const MeshData& data, const MeshChe
     }
     std::map<std::size_t, std::vector<std::size_t>> triangles_on;  // cells by index in `boundary`
     for (const SourceFace f : boundary) {
-        auto points = points_of(data, f);
+        auto points = points_of(faces, f);
         if (points.size() != 3) continue;
         std::ranges::sort(points);
         const auto found = face_of_corners.find({points[0], points[1], points[2]});
@@ -93,8 +93,9 @@ WeldOutlook outlook_of_weld(const MeshData& data) {
     std::ranges::set_difference(after.shared_faces, before.shared_faces, std::back_inserter(gained),
                                 {}, &SharedFace::a, &SharedFace::a);
     std::vector<bool> hangs_together(data.points.size(), false);
+    const SourceFaces faces(welded);
     for (const SharedFace& shared : gained)
-        for (const std::size_t p : points_of(welded, shared.a)) hangs_together[p] = true;
+        for (const std::size_t p : points_of(faces, shared.a)) hangs_together[p] = true;
     for (std::size_t p = 0; p < data.points.size(); ++p)
         if (welded.is_welded(p) && !hangs_together[static_cast<std::size_t>(welded.welded_to[p])])
             ++outlook.num_idle;
@@ -104,8 +105,9 @@ WeldOutlook outlook_of_weld(const MeshData& data) {
 
 std::vector<bool> points_of_boundary(const MeshData& data) {
     std::vector<bool> is_on_boundary(data.points.size(), false);
-    for (const SourceFace f : boundary_of(data, check_cells(data)))
-        for (const std::size_t p : points_of(data, f)) is_on_boundary[p] = true;
+    const SourceFaces faces(data);
+    for (const SourceFace f : boundary_of(data, faces, check_cells(data)))
+        for (const std::size_t p : points_of(faces, f)) is_on_boundary[p] = true;
     return is_on_boundary;
 }
 

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "incise/topology/cell_kind.h"
@@ -50,29 +51,51 @@ std::optional<topology::CellKind> kind_of(int vtk_type) {
     }
 }
 
+/// The bits of a cell in the arrays cut_faces, cut_faces_31, ...
+class CutFaces {
+  public:
+    explicit CutFaces(vtkUnstructuredGrid& grid) {
+        vtkDataArray* array = nullptr;
+        const auto name = [&] {
+            const std::size_t first = arrays_.size() * topology::max_cut_faces;
+            return "cut_faces" + (first == 0 ? "" : "_" + std::to_string(first));
+        };
+        while ((array = grid.GetCellData()->GetArray(name().c_str())) != nullptr)
+            arrays_.push_back(array);
+    }
+    bool has(vtkIdType cell, int face) const {
+        const auto list = static_cast<std::size_t>(face / topology::max_cut_faces);
+        return list < arrays_.size() && (static_cast<int>(arrays_[list]->GetComponent(cell, 0)) >>
+                                             face % topology::max_cut_faces &
+                                         1) != 0;
+    }
+
+  private:
+    std::vector<vtkDataArray*> arrays_;
+};
+
 /// As is_cut(), for a polyhedron. A polygon may be a part of a face.
-bool is_cut_of_polyhedron(vtkUnstructuredGrid& grid, vtkIdType cell, int cut_faces,
+bool is_cut_of_polyhedron(vtkUnstructuredGrid& grid, vtkIdType cell, const CutFaces& cut_faces,
                           const std::vector<vtkIdType>& polygon) {
     vtkNew<vtkIdList> stream;
     grid.GetFaceStream(cell, stream);
     vtkIdType at = 0;
     const vtkIdType count = stream->GetId(at++);
     std::vector<vtkIdType> face;
-    for (vtkIdType f = 0; f < std::min<vtkIdType>(count, topology::max_cut_faces); ++f) {
+    for (int f = 0; f < count; ++f) {
         face.clear();
         for (vtkIdType left = stream->GetId(at++); left > 0; --left)
             face.push_back(stream->GetId(at++));
         std::sort(face.begin(), face.end());
-        if ((cut_faces >> f & 1) != 0 && std::ranges::includes(face, polygon)) return true;
+        if (cut_faces.has(cell, f) && std::ranges::includes(face, polygon)) return true;
     }
     return false;
 }
 
 /// True if a polygon, of these points in ascending order, is a face of the cell that `cut_faces`
 /// has.
-bool is_cut(vtkUnstructuredGrid& grid, vtkIdType cell, int cut_faces,
+bool is_cut(vtkUnstructuredGrid& grid, vtkIdType cell, const CutFaces& cut_faces,
             const std::vector<vtkIdType>& polygon) {
-    if (cut_faces == 0) return false;
     if (grid.GetCellType(cell) == VTK_POLYHEDRON)
         return is_cut_of_polyhedron(grid, cell, cut_faces, polygon);
     const auto kind = kind_of(grid.GetCellType(cell));
@@ -82,7 +105,7 @@ bool is_cut(vtkUnstructuredGrid& grid, vtkIdType cell, int cut_faces,
     const topology::CellTraits& traits = topology::traits(*kind);
     std::vector<vtkIdType> face;
     for (int f = 0; f < traits.num_faces; ++f) {
-        if ((cut_faces >> f & 1) == 0) continue;
+        if (!cut_faces.has(cell, f)) continue;
         face.clear();
         for (const int corner : traits.face(f)) face.push_back(corners->GetId(corner));
         std::sort(face.begin(), face.end());
@@ -141,7 +164,7 @@ void add_tissue_look(vtkUnstructuredGrid& grid, vtkPolyData& surface) {
         vtkIdTypeArray::SafeDownCast(surface.GetPointData()->GetArray("vtkOriginalPointIds"));
     if (!cells || !points) return;
     auto* regions = grid.GetCellData()->GetArray("region");
-    auto* cut_faces = grid.GetCellData()->GetArray("cut_faces");
+    const CutFaces cut_faces(grid);
     const Tones tones(grid);
     const auto colors = colors_for(surface);
     vtkNew<vtkIdList> ids;
@@ -153,9 +176,9 @@ void add_tissue_look(vtkUnstructuredGrid& grid, vtkPolyData& surface) {
         for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
             polygon.push_back(points->GetValue(ids->GetId(k)));
         std::sort(polygon.begin(), polygon.end());
-        const int faces = cut_faces ? static_cast<int>(cut_faces->GetComponent(cell, 0)) : 0;
-        colors->SetTypedTuple(
-            i, is_cut(grid, cell, faces, polygon) ? of_cut.data() : tones.of(regions, cell).data());
+        colors->SetTypedTuple(i, is_cut(grid, cell, cut_faces, polygon)
+                                     ? of_cut.data()
+                                     : tones.of(regions, cell).data());
     }
     surface.GetCellData()->AddArray(colors);
 }

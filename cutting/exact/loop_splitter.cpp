@@ -54,7 +54,6 @@ void LoopStep::find_crossed_edges() {
     std::vector<MovingPoint> points;
     const auto may_meet = [&](const Box& box) { return surface_.may_meet(box); };
     tissue_.for_each_near(may_meet, [&](CellId e) {
-        if (stays_whole(e)) return;
         points.clear();
         for (const VertexId n : mesh_.corners(e)) points.push_back(point(n));
         if (!surface_.may_meet_hull(points)) return;
@@ -65,8 +64,13 @@ void LoopStep::find_crossed_edges() {
                 if (a < b) edges_of_cells.emplace_back(e, edges.add({a, b}, e));
             }
     });
+    std::vector<bool> may_be_crossed(edges.entries().size(), !only_);
+    if (only_)
+        for (const auto& [e, edge] : edges_of_cells)
+            if (!stays_whole(e)) may_be_crossed[edge] = true;
     std::vector<bool> is_crossed(edges.entries().size());
     for (std::size_t i = 0; i < edges.entries().size(); ++i) {
+        if (!may_be_crossed[i]) continue;
         const Edge& edge = edges.entries()[i].edge;
         EdgeIntersections passed =
             intersections_of(surface_, point(edge.a), point(edge.b), nearness);
@@ -76,7 +80,8 @@ void LoopStep::find_crossed_edges() {
     }
     for (const auto& [e, edge] : edges_of_cells)
         if (is_crossed[edge] && (crossed_.empty() || crossed_.back() != e)) crossed_.push_back(e);
-    report_.elements_crossed = crossed_.size();
+    report_.elements_crossed = static_cast<std::size_t>(
+        std::ranges::count_if(crossed_, [&](CellId e) { return !stays_whole(e); }));
 }
 
 void LoopStep::receive(const Edge& edge, EdgeIntersections intersections) {

@@ -141,42 +141,63 @@ Near near_to(const Mesh& mesh, VertexId n, double distance) {
     return near;
 }
 
-}  // namespace
-
-/// Returns the tolerance of a cut at a node, m.
-double OpenedNodes::margin_of(const Mesh& mesh, VertexId n) const {
-    double longest = length_of(n);
-    std::vector<CellId> star;
-    mesh.star(n, star);
-    for (const CellId e : star)
-        for (const VertexId other : mesh.corners(e))
-            longest = std::max(longest, (mesh.rest_position(other) - mesh.rest_position(n)).norm());
+/// Returns the tolerance of a cut at a node, m. A cut leaves cells beside nodes of the mesh that
+/// are much smaller than the edges on which their nodes were made: so cells count that are joined
+/// to those at the node, up to the first of a usual size.
+/// @param usual  the size of cells, m
+double margin_of(const Mesh& mesh, VertexId n, double usual) {
+    constexpr std::size_t most_cells = 64;
+    std::vector<CellId> cells;
+    mesh.star(n, cells);
+    double longest = 0.0;
+    for (const CellId e : cells)
+        for (const VertexId corner : mesh.corners(e))
+            longest =
+                std::max(longest, (mesh.rest_position(corner) - mesh.rest_position(n)).norm());
+    constexpr double small = 0.1;
+    for (std::size_t begin = 0; longest < small * usual && cells.size() < most_cells;) {
+        const std::size_t end = cells.size();
+        for (; begin < end; ++begin)
+            for (int f = 0; f < mesh.num_faces(cells[begin]); ++f) {
+                const CellId other = mesh.neighbor({cells[begin], f}).cell;
+                if (!other.is_valid() || std::ranges::find(cells, other) != cells.end()) continue;
+                cells.push_back(other);
+                Box box;
+                for (const VertexId corner : mesh.corners(other))
+                    box.extend(mesh.rest_position(corner));
+                longest = std::max(longest, box.diagonal().norm() / std::sqrt(3.0));
+            }
+        if (cells.size() == end) break;
+    }
     return default_snap * longest;
 }
 
+}  // namespace
+
 void OpenedNodes::apply(const Mesh& mesh, const ChangeSet& changes) {
-    for (const topology::VertexRecord& record : changes.nodes_added) {
-        const Vec3& first = mesh.rest_position(record.sources[0].node);
-        double longest = 0.0;
-        for (int k = 0; k < record.num_sources; ++k) {
-            const VertexId source = record.sources[static_cast<std::size_t>(k)].node;
-            longest =
-                std::max({longest, length_of(source), (mesh.rest_position(source) - first).norm()});
-        }
-        lengths_[record.id] = longest;
-    }
-    for (const topology::VertexRecord& record : changes.nodes_removed) {
-        nodes_.erase(record.id);
-        lengths_.erase(record.id);
-    }
+    for (const topology::VertexRecord& record : changes.nodes_removed) nodes_.erase(record.id);
     std::vector<VertexId> touched;
     for (const CellId e : topology::touched_cells(changes))
         if (e.index() < mesh.element_capacity() && mesh.is_alive(e))
             std::ranges::copy(mesh.corners(e), std::back_inserter(touched));
-    std::ranges::sort(touched);
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    find_at(mesh, std::move(touched));
+}
+
+void OpenedNodes::find_all(const Mesh& mesh, double usual) {
+    usual_ = usual;
+    std::vector<VertexId> nodes;
+    for (const CellId e : mesh.elements())
+        if (mesh.is_polyhedron(e)) std::ranges::copy(mesh.corners(e), std::back_inserter(nodes));
+    find_at(mesh, std::move(nodes));
+    settle(mesh, std::numeric_limits<std::size_t>::max());
+}
+
+/// Finds the opened faces at each of some nodes.
+void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes) {
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     std::vector<CellId> star;
-    for (const VertexId n : touched) {
+    for (const VertexId n : nodes) {
         Node node;
         if (const auto before = nodes_.find(n); before != nodes_.end()) {
             node.is_moved = before->second.is_moved;
@@ -212,7 +233,7 @@ void OpenedNodes::apply(const Mesh& mesh, const ChangeSet& changes) {
         // At the end of a cut, both of its sides meet.
         constexpr double least_share = 0.1;
         if (!(outwards.norm() > least_share * area)) continue;
-        node.margin = margin_of(mesh, n);
+        node.margin = margin_of(mesh, n, usual_);
         nodes_[n] = std::move(node);
     }
 }
@@ -232,7 +253,7 @@ void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
             node = std::move(before->second);
             nodes_.erase(before);
         }
-        node.margin = margin_of(mesh, n);
+        node.margin = margin_of(mesh, n, usual_);
         node.is_moved = false;
         std::vector<Face> faces;
         for (const CellId e : near_to(mesh, n, 2.0 * node.margin).cells) {
@@ -312,15 +333,12 @@ bool OpenedNodes::has_new() const {
 
 bool OpenedNodes::is_on(const Mesh& mesh) const {
     const auto is_there = [&](VertexId n) { return n.index() < mesh.node_capacity(); };
-    return std::ranges::all_of(
-               nodes_,
-               [&](const auto& entry) {
-                   return is_there(entry.first) &&
-                          std::ranges::all_of(entry.second.around, [&](const auto& neighbours) {
-                              return is_there(neighbours.first) && is_there(neighbours.second);
-                          });
-               }) &&
-           std::ranges::all_of(lengths_, [&](const auto& entry) { return is_there(entry.first); });
+    return std::ranges::all_of(nodes_, [&](const auto& entry) {
+        return is_there(entry.first) &&
+               std::ranges::all_of(entry.second.around, [&](const auto& neighbours) {
+                   return is_there(neighbours.first) && is_there(neighbours.second);
+               });
+    });
 }
 
 }  // namespace incise::cutting

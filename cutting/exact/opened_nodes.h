@@ -28,6 +28,10 @@ class OpenedNodes {
   public:
     using Positions = topology::NodeField<VertexId, Vec3>;
 
+    /// Finds all opened faces of a body. Cost: proportional to its cuts.
+    /// @param usual  the size of its cells, m
+    void find_all(const topology::Mesh& mesh, double usual);
+
     /// Follows an edit of the mesh. Nodes that are new here are not moved before the next
     /// move_all() or move_new(). Cost: proportional to the edit.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
@@ -48,7 +52,7 @@ class OpenedNodes {
 
     /// True if the mesh has all nodes that it names.
     bool is_on(const topology::Mesh& mesh) const;
-    static void archive(auto& ar, auto& self) { ar(self.nodes_, self.lengths_, self.unsettled_); }
+    static void archive(auto& ar, auto& self) { ar(self.usual_, self.nodes_, self.unsettled_); }
 
   private:
     /// Corners of an opened face, anticlockwise as seen from outside.
@@ -64,18 +68,12 @@ class OpenedNodes {
         }
     };
 
-    double length_of(VertexId n) const {
-        const auto it = lengths_.find(n);
-        return it != lengths_.end() ? it->second : 0.0;
-    }
-    double margin_of(const topology::Mesh& mesh, VertexId n) const;
+    void find_at(const topology::Mesh& mesh, std::vector<VertexId> nodes);
     static void move(VertexId n, Node& node, std::span<const Vec3> positions, Positions& seen);
 
+    double usual_ = 0.0;  // size of cells, m
     std::unordered_map<VertexId, Node> nodes_;
     std::vector<VertexId> unsettled_;  // on or beside opened faces
-    // By node that an edit has made: the longest length at rest of the edge or face on which it
-    // did, or of those of its sources, m. The cells at it can be much smaller.
-    std::unordered_map<VertexId, double> lengths_;
 };
 
 }  // namespace incise::cutting

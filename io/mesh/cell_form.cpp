@@ -55,7 +55,9 @@ std::size_t CellCollector::remove_nodes_between_corners(topology::MeshData& mesh
     }
     mesh.points.resize(num_left);
     mesh.source_points.resize(num_left);
-    for (auto& corner : mesh.corners) corner = new_number[static_cast<std::size_t>(corner)];
+    const auto renumber = [&](std::int64_t& p) { p = new_number[static_cast<std::size_t>(p)]; };
+    std::ranges::for_each(mesh.corners, renumber);
+    mesh.for_each_point_of_faces(renumber);
     return num_removed;
 }
 

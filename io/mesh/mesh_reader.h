@@ -53,8 +53,8 @@ struct MeshFile {
     std::map<std::string, std::vector<Vec3>> cell_vectors = {};
 };
 
-/// Reads the tetrahedra, hexahedra, wedges and pyramids of a file, in the order of the file.
-/// Elements of Abaqus are in the order of their numbers.
+/// Reads the tetrahedra, hexahedra, wedges, pyramids and, of VTK files, polyhedra, in the order of
+/// the file. Elements of Abaqus are in the order of their numbers.
 ///
 /// The contents of the file decide its format, or else its suffix. Formats: VTU (all encodings),
 /// legacy VTK unstructured grids, Gmsh 1, 2 and 4.1, MEDIT (text), TetGen (either file of the pair
@@ -63,8 +63,8 @@ struct MeshFile {
 ///
 /// Vertices, lines and surface cells are left out with a warning. So are the nodes of cells of
 /// higher order that are no corners, if ReadOptions::linear is set; the points that are left keep
-/// their order. A point array `rest_position` of
-/// a VTK file replaces its points. The arrays `carrier` and `carrier_corners` of a VTU file become
+/// their order. A point array `rest_position` of a VTK file replaces its points. The arrays
+/// `carrier`, `carrier_corners` and `carrier_types` of a VTU file become
 /// MeshData::carriers. Regions are the cell array of the options, the physical groups
 /// of Gmsh, the references of MEDIT, the first attribute of TetGen, or the element sets of
 /// Abaqus, FEBio and USD.

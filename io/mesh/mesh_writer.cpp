@@ -19,6 +19,7 @@ struct WrittenFormat {
     const char* suffix;
     std::string (*text)(const topology::MeshData&);
     bool has_carriers = false;
+    bool has_polyhedra = false;
     bool has_other_kinds = true;  ///< cells that are no tetrahedra
 };
 
@@ -35,9 +36,9 @@ constexpr std::array<WrittenFormat, 6> written_formats = {{
     {".inp", abaqus_text},
     {".mesh", medit_text},
     {".msh", gmsh_text},
-    {".usda", usda_text, false, false},
-    {".vtk", legacy_vtk_text},
-    {".vtu", plain_vtu_text, true},
+    {".usda", usda_text, false, false, false},
+    {".vtk", legacy_vtk_text, false, true},
+    {".vtu", plain_vtu_text, true, true},
 }};
 
 const WrittenFormat& written_format_of(const std::filesystem::path& path) {
@@ -81,7 +82,7 @@ void write_mesh(const std::filesystem::path& path, const topology::MeshData& mes
         if (mesh.kinds[c] != topology::CellKind::tetrahedron)
             throw InputError(path.string() + ": the format holds tetrahedra alone, and " +
                              mesh.cell_name(c) + " is none; write .vtu");
-    for (std::size_t c = 0; c < mesh.num_cells() && !format.has_carriers; ++c)
+    for (std::size_t c = 0; c < mesh.num_cells() && !format.has_polyhedra; ++c)
         if (mesh.kinds[c] == topology::CellKind::polyhedron)
             throw InputError(path.string() + ": the format has no polyhedra, and " +
                              mesh.cell_name(c) + " is one, which a cut has made; write .vtu");
@@ -91,6 +92,11 @@ void write_mesh(const std::filesystem::path& path, const topology::MeshData& mes
 std::optional<std::string> loss_in_format(const std::filesystem::path& path,
                                           const topology::MeshData& mesh) {
     if (mesh.carriers.is_empty() || written_format_of(path).has_carriers) return std::nullopt;
+    if (std::ranges::count(mesh.kinds, topology::CellKind::polyhedron) > 0)
+        return path.string() +
+               ": the format has no place for the carriers of a body that was cut, without which "
+               "polyhedra have no forces: programs can show the file, and `incise run` will refuse "
+               "it; write .vtu to keep them";
     return path.string() +
            ": the format has no place for the carriers of a body that was cut: each part of an "
            "element will be read as an element of its own; write .vtu to keep them";

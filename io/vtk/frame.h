@@ -29,15 +29,15 @@ struct Field {
 };
 
 /// A mesh with its fields. The regions of the mesh are written as the cell array "region" and need
-/// no field. Carriers are written as the cell array "carrier" and the field data "carrier_corners",
-/// and the faces on cuts as the cell array "cut_faces".
+/// no field. Carriers are written as the cell array "carrier" and the field data "carrier_corners"
+/// and "carrier_types", and the faces on cuts as the cell arrays "cut_faces", "cut_faces_31", ...
 struct Frame {
     topology::MeshData mesh;          ///< its points are the current positions
     std::vector<Field> point_fields;  ///< with different names
-    std::vector<Field> cell_fields;  ///< with different names: not "region", "carrier", "cut_faces"
-    std::vector<Field> field_data;   ///< of any lengths, with different names
-    std::optional<double> time;      ///< s
-    std::string active_vectors;      ///< name of the point field for warping in viewers, or empty
+    std::vector<Field> cell_fields;   ///< with different names, none of those above
+    std::vector<Field> field_data;    ///< of any lengths, with different names
+    std::optional<double> time;       ///< s
+    std::string active_vectors;       ///< name of the point field for warping in viewers, or empty
 };
 
 enum class Compression { none, lz4, zlib, lzma };

@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <concepts>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -101,6 +102,7 @@ class LegacyVtkReader {
             if (!piece_.vectors.contains(name) && !piece_.types.empty())
                 refuse_missing_vectors(file_.name(), name, other_vector_arrays_);
         piece_.is_frame = has_rest_positions_ && has_node_ids_;
+        take_faces_of_polyhedra();
         MeshFile result;
         auto collector = make_vtk_collector(file_.name(), options_);
         append_piece(piece_, file_.name(), result, collector);
@@ -190,6 +192,42 @@ class LegacyVtkReader {
             throw InputError(file_.name() + ": the cell list has " + std::to_string(size) +
                              " entries, but its " + std::to_string(num_cells) + " cells fill " +
                              std::to_string(position));
+    }
+
+    /// The entries of a polyhedron are its faces: how many, then for each face the number of its
+    /// points and its points. The points of the cell are then those of its faces, each once.
+    void take_faces_of_polyhedra() {
+        constexpr std::int64_t polyhedron = vtk_cell_type(topology::CellKind::polyhedron);
+        if (std::ranges::count(piece_.types, polyhedron) == 0) return;
+        piece_.faces = std::exchange(piece_.connectivity, {});
+        piece_.face_begins.assign(piece_.offsets.begin(), piece_.offsets.end() - 1);
+        piece_.face_ends.assign(piece_.offsets.begin() + 1, piece_.offsets.end());
+        for (std::size_t c = 0; c < piece_.types.size(); ++c) {
+            const std::span<const std::int64_t> entries(piece_.faces.data() + piece_.face_begins[c],
+                                                        piece_.faces.data() + piece_.face_ends[c]);
+            const auto first = std::ssize(piece_.connectivity);
+            if (piece_.types[c] == polyhedron)
+                append_points_of_faces(entries, first);
+            else
+                piece_.connectivity.insert(piece_.connectivity.end(), entries.begin(),
+                                           entries.end());
+            piece_.offsets[c] = first;
+        }
+        piece_.offsets.back() = std::ssize(piece_.connectivity);
+    }
+
+    /// Appends the points of faces to the connectivity, each once. Faces that do not fill their
+    /// list are refused later.
+    void append_points_of_faces(std::span<const std::int64_t> faces, std::ptrdiff_t first) {
+        std::size_t at = 1;
+        while (at < faces.size() && faces[at] >= 0 &&
+               faces[at] < std::ssize(faces) - static_cast<std::int64_t>(at)) {
+            const auto end = at + 1 + static_cast<std::size_t>(faces[at]);
+            for (++at; at < end; ++at)
+                if (std::find(piece_.connectivity.begin() + first, piece_.connectivity.end(),
+                              faces[at]) == piece_.connectivity.end())
+                    piece_.connectivity.push_back(faces[at]);
+        }
     }
 
     // CELLS n size, OFFSETS type, n numbers, CONNECTIVITY type, size numbers; n is #cells + 1.

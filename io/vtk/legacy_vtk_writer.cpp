@@ -2,26 +2,26 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/base/number_format.h"
 #include "incise/io/mesh/mesh_text.h"
+#include "incise/io/vtk/vtk_cells.h"
+#include "incise/topology/source_faces.h"
 
 namespace incise::io {
 
 namespace {
 
-const char* legacy_cell_type(topology::CellKind kind) {
-    using enum topology::CellKind;
-    switch (kind) {
-        case tetrahedron:
-            return "10\n";
-        case hexahedron:
-            return "12\n";
-        case wedge:
-            return "13\n";
-        case pyramid:
-            return "14\n";
-        case polyhedron:
-            break;
+/// Returns the entries of a cell in CELLS: its corners, or the faces of a polyhedron, each behind
+/// the number of its corners, behind their number.
+std::vector<std::int64_t> entries_of(const topology::MeshData& mesh,
+                                     const topology::SourceFaces& faces, std::size_t c) {
+    if (mesh.kinds[c] != topology::CellKind::polyhedron)
+        return {mesh.cell(c).begin(), mesh.cell(c).end()};
+    std::vector<std::int64_t> entries{faces.num_faces(c)};
+    for (int f = 0; f < faces.num_faces(c); ++f) {
+        const auto points = faces.points({c, f});
+        entries.push_back(std::ssize(points));
+        entries.insert(entries.end(), points.begin(), points.end());
     }
-    return "";
+    return entries;
 }
 
 }  // namespace
@@ -36,18 +36,22 @@ std::string legacy_vtk_text(const topology::MeshData& mesh) {
         append_point(text, point);
         text += '\n';
     }
-    text += "CELLS " + num_cells + " " + std::to_string(mesh.num_cells() + mesh.corners.size());
-    text += '\n';
+    const topology::SourceFaces faces(mesh);
+    std::size_t num_entries = mesh.num_cells();
+    std::string cells;
     for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
-        append_number(text, mesh.cell(c).size());
-        for (const auto corner : mesh.cell(c)) {
-            text += ' ';
-            append_number(text, corner);
+        const auto entries = entries_of(mesh, faces, c);
+        num_entries += entries.size();
+        append_number(cells, entries.size());
+        for (const auto entry : entries) {
+            cells += ' ';
+            append_number(cells, entry);
         }
-        text += '\n';
+        cells += '\n';
     }
+    text += "CELLS " + num_cells + " " + std::to_string(num_entries) + "\n" + cells;
     text += "CELL_TYPES " + num_cells + "\n";
-    for (const auto kind : mesh.kinds) text += legacy_cell_type(kind);
+    for (const auto kind : mesh.kinds) text += std::to_string(vtk_cell_type(kind)) + "\n";
     text += "CELL_DATA " + num_cells + "\nSCALARS region int 1\nLOOKUP_TABLE default\n";
     for (const auto region : mesh.regions) {
         append_number(text, region);

@@ -49,7 +49,7 @@ constexpr CellForm forms[] = {
     {36, "quadratic polygon", 0, ignore},
     {37, "triquadratic pyramid", 19, by_corners, CellKind::pyramid},
     {41, "convex point set", 0},
-    {42, "polyhedron", 0},
+    {42, "polyhedron", 0, keep, CellKind::polyhedron},
     {51, "parametric curve", 0, ignore},
     {52, "parametric surface", 0, ignore},
     {53, "parametric triangular surface", 0, ignore},
@@ -88,7 +88,68 @@ std::string quoted_list(const std::vector<std::string>& names) {
     return list;
 }
 
+/// Appends a polyhedron. Its faces must fill their range and name the points of the cell.
+/// @param first_point  number in the mesh of the first point of the piece
+void keep_polyhedron(const VtkPiece& piece, std::size_t c, std::int64_t first_point,
+                     std::span<const std::int64_t> nodes, int region, const std::string& here,
+                     topology::MeshData& mesh) {
+    const auto refuse = [&](const std::string& what) {
+        throw InputError(here + ": " + what + "; the file is damaged");
+    };
+    const auto begin = static_cast<std::size_t>(piece.face_begins[c]),
+               end = static_cast<std::size_t>(piece.face_ends[c]);
+    std::vector<std::int64_t> list(piece.faces.begin() + piece.face_begins[c],
+                                   piece.faces.begin() + piece.face_ends[c]);
+    const std::int64_t num_faces = begin < end ? list.front() : 0;
+    if (num_faces < 1) refuse("a polyhedron has " + std::to_string(num_faces) + " faces");
+    std::size_t at = 1;
+    std::vector<std::int64_t> named;
+    for (std::int64_t f = 0; f < num_faces; ++f) {
+        const std::int64_t size = at < list.size() ? list[at++] : -1;
+        if (size < 0 || size > std::ssize(list) - static_cast<std::int64_t>(at))
+            refuse("face " + std::to_string(f) + " of " + std::to_string(num_faces) +
+                   " ends behind the faces of the polyhedron");
+        if (size < 3)
+            refuse("face " + std::to_string(f) + " of " + std::to_string(num_faces) + " has " +
+                   std::to_string(size) + " points");
+        for (std::int64_t left = size; left > 0; --left, ++at) {
+            named.push_back(list[at]);
+            list[at] += first_point;
+        }
+    }
+    if (at != list.size())
+        refuse("a polyhedron has " + std::to_string(list.size()) +
+               " numbers for its faces, which fill " + std::to_string(at));
+    std::vector<std::int64_t> corners(nodes.begin(), nodes.end());
+    for (std::int64_t& n : named) n += first_point;
+    for (auto* points : {&named, &corners}) {
+        std::ranges::sort(*points);
+        points->erase(std::unique(points->begin(), points->end()), points->end());
+    }
+    if (named != corners) refuse("a polyhedron has other points than its faces");
+    mesh.add_polyhedron(list, region);
+}
+
+/// Sets which faces of the last cell are on a cut, in one of the lists.
+void keep_cut_faces(std::size_t list, std::int64_t given, const std::string& here,
+                    topology::MeshData& mesh) {
+    const auto faces = static_cast<std::int32_t>(given);
+    if (faces != given)
+        throw InputError(here + ": the " + cut_faces_array(list) + " " + std::to_string(given) +
+                         " are not a whole number of 32 bits");
+    if (mesh.further_cut_faces.size() < list) mesh.further_cut_faces.resize(list);
+    mesh.cut_faces.resize(mesh.num_cells());
+    for (auto& further : mesh.further_cut_faces) further.resize(mesh.num_cells());
+    (list == 0 ? mesh.cut_faces : mesh.further_cut_faces[list - 1]).back() = faces;
+}
+
 }  // namespace
+
+std::optional<CellKind> kind_of_vtk_cell(std::int64_t type) {
+    for (int k = 0; k <= topology::num_cell_kinds; ++k)
+        if (const auto kind = static_cast<CellKind>(k); vtk_cell_type(kind) == type) return kind;
+    return std::nullopt;
+}
 
 void refuse_missing_vectors(const std::string& location, const std::string& name,
                             const std::vector<std::string>& others) {
@@ -182,19 +243,22 @@ void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& 
             throw InputError(here() + ": region " + shown(piece.regions[c]) +
                              " is not a whole number of 32 bits; name another array as the "
                              "region array");
-        collector.keep(*form, first_cell + static_cast<std::int64_t>(c), nodes, *region, mesh);
-        if (!piece.carriers.empty()) mesh.carriers.of_cell.push_back(piece.carriers[c]);
-        if (!piece.cut_faces.empty() && piece.cut_faces[c] != 0) {
-            mesh.cut_faces.resize(mesh.num_cells());
-            mesh.cut_faces.back() = static_cast<std::int32_t>(piece.cut_faces[c]);
-            if (mesh.cut_faces.back() != piece.cut_faces[c])
-                throw InputError(here() + ": the cut_faces " + std::to_string(piece.cut_faces[c]) +
-                                 " are not a whole number of 32 bits");
+        const std::int64_t number = first_cell + static_cast<std::int64_t>(c);
+        if (form->kind == CellKind::polyhedron) {
+            keep_polyhedron(piece, c, first_point, nodes, *region, here(), mesh);
+            mesh.source_cells.push_back(number);
+        } else {
+            collector.keep(*form, number, nodes, *region, mesh);
         }
+        if (!piece.carriers.empty()) mesh.carriers.of_cell.push_back(piece.carriers[c]);
+        for (std::size_t k = 0; k < piece.cut_faces.size(); ++k)
+            if (!piece.cut_faces[k].empty() && piece.cut_faces[k][c] != 0)
+                keep_cut_faces(k, piece.cut_faces[k][c], here(), mesh);
         for (const auto& [name, values] : piece.vectors)
             file.cell_vectors[name].emplace_back(values.data() + 3 * c);
     }
     if (!mesh.cut_faces.empty()) mesh.cut_faces.resize(mesh.num_cells());
+    for (auto& further : mesh.further_cut_faces) further.resize(mesh.num_cells());
 }
 
 }  // namespace incise::io

@@ -3,8 +3,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,22 +18,42 @@
 namespace incise::io {
 
 /// The arrays of .vtu files that contain topology::Carriers: a cell array of one whole number, and
-/// an array of the field data with four positions a tuple.
+/// an array of the field data with four positions a tuple. If not all carriers are tetrahedra, a
+/// tuple has eight positions, of which those behind the corners are zero, and a further array of
+/// the field data has the type of each in VTK.
 inline constexpr const char* carrier_array = "carrier";
 inline constexpr const char* carrier_corners_array = "carrier_corners";
-/// The cell array of .vtu files that contains topology::MeshData::cut_faces.
-inline constexpr const char* cut_faces_array = "cut_faces";
+inline constexpr const char* carrier_types_array = "carrier_types";
+
+/// Returns the cell array of .vtu files that contains topology::MeshData::cut_faces, or entry
+/// `list - 1` of further_cut_faces. Its name has the number of its first face: cut_faces_31.
+inline std::string cut_faces_array(std::size_t list = 0) {
+    return list == 0 ? "cut_faces" : "cut_faces_" + std::to_string(list * topology::max_cut_faces);
+}
+
+/// Returns the number of a kind of cell in VTK.
+constexpr int vtk_cell_type(topology::CellKind kind) {
+    constexpr std::array<int, topology::num_cell_kinds + 1> types = {10, 12, 13, 14, 42};
+    return types[static_cast<std::size_t>(kind)];
+}
+/// Returns the kind of linear cell that has a number in VTK; nothing if Incise has none. The
+/// pixels of voxels are in another order.
+std::optional<topology::CellKind> kind_of_vtk_cell(std::int64_t type);
 
 /// The arrays of one piece of an unstructured grid. Their lengths are consistent. Their contents
 /// are not checked.
 struct VtkPiece {
-    std::vector<double> coordinates;                     ///< three a point
-    std::vector<std::int64_t> types;                     ///< one a cell
-    std::vector<std::int64_t> offsets;                   ///< #cells + 1, from 0
-    std::vector<std::int64_t> connectivity;              ///< points of the cells
-    std::vector<double> regions;                         ///< one a cell; if empty, all are 0
-    std::vector<std::int64_t> carriers;                  ///< one a cell; if empty, all are whole
-    std::vector<std::int64_t> cut_faces;                 ///< one a cell; if empty, none is on a cut
+    std::vector<double> coordinates;         ///< three a point
+    std::vector<std::int64_t> types;         ///< one a cell
+    std::vector<std::int64_t> offsets;       ///< #cells + 1, from 0
+    std::vector<std::int64_t> connectivity;  ///< points of the cells
+    std::vector<double> regions;             ///< one a cell; if empty, all are 0
+    std::vector<std::int64_t> carriers;      ///< one a cell; if empty, all are whole
+    /// By list of cut_faces_array(), one a cell; if empty, none is on a cut.
+    std::vector<std::vector<std::int64_t>> cut_faces;
+    /// The faces of polyhedra: for each its number of faces, then for each face the number of its
+    /// points and its points. By cell, where its faces begin and end.
+    std::vector<std::int64_t> faces, face_begins, face_ends;
     std::map<std::string, std::vector<double>> vectors;  ///< by name, three numbers a cell
     /// True for a frame of a run, in which the mesh may be cut. Its points have the arrays
     /// rest_position and node_id.
@@ -45,7 +67,8 @@ void check_offsets(const std::vector<std::int64_t>& offsets, const std::string& 
 /// Appends the points, the volume cells and the vectors of a piece. Checks kinds, sizes, point
 /// numbers and regions, and throws InputError. Messages begin with `location`: the file, and the
 /// piece if there are several.
-/// @pre  check_offsets() has passed, and the last offset is connectivity.size()
+/// @pre  check_offsets() has passed, and the last offset is connectivity.size(). The faces of a
+///       polyhedron are in the range of `faces`.
 void append_piece(const VtkPiece& piece, const std::string& location, MeshFile& file,
                   CellCollector& collector);
 

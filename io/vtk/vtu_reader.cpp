@@ -3,9 +3,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/io/vtk/vtu_reader.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <iterator>
 #include <pugixml.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,6 +22,8 @@
 #include "incise/io/vtk/vtk_xml_array.h"
 
 namespace incise::io {
+
+using topology::CellKind;
 
 namespace {
 
@@ -78,9 +83,9 @@ class VtuReader {
                              remedy_for_dataset(lower_case(type)));
         }
         const VtkXmlArrays arrays(file_, encoding_of(root, text));
-        const auto corners =
-            named(root.child("UnstructuredGrid").child("FieldData"), carrier_corners_array);
-        if (corners) read_carrier_corners(arrays, corners);
+        const auto field_data = root.child("UnstructuredGrid").child("FieldData");
+        const auto corners = named(field_data, carrier_corners_array);
+        if (corners) read_carrier_corners(arrays, corners, named(field_data, carrier_types_array));
         const auto pieces = root.child("UnstructuredGrid").children("Piece");
         const auto num_pieces = std::distance(pieces.begin(), pieces.end());
         std::size_t index = 0;
@@ -146,16 +151,30 @@ class VtuReader {
         return encoding;
     }
 
-    void read_carrier_corners(const VtkXmlArrays& arrays, pugi::xml_node array) {
-        constexpr std::size_t size = 12;  // four positions
+    void read_carrier_corners(const VtkXmlArrays& arrays, pugi::xml_node array,
+                              pugi::xml_node types) {
+        constexpr std::size_t size_of_tetrahedron = 12;  // four positions
+        const std::size_t size = types ? 3 * topology::max_corners : size_of_tetrahedron;
         if (arrays.num_components(array) != size)
-            arrays.fail(array, "carriers need 12 components, four positions; this array has " +
+            arrays.fail(array, "carriers need " + std::to_string(size) + " components, " +
+                                   (types ? "eight" : "four") + " positions; this array has " +
                                    std::to_string(arrays.num_components(array)));
         const auto num_rows = arrays.count_attribute(array, "NumberOfTuples");
         const auto numbers = arrays.reals(array, size * num_rows);
-        for (std::size_t i = 0; i < numbers.size(); i += size) {
-            auto& row = result_.mesh.carriers.corners.emplace_back();
-            for (std::size_t k = 0; k < 4; ++k) row[k] = Vec3(numbers.data() + i + 3 * k);
+        const auto type_of_row =
+            types ? arrays.integers(types, num_rows)
+                  : std::vector<std::int64_t>(num_rows, vtk_cell_type(CellKind::tetrahedron));
+        for (std::size_t row = 0; row < num_rows; ++row) {
+            const auto kind = kind_of_vtk_cell(type_of_row[row]);
+            if (!kind || *kind == CellKind::polyhedron)
+                arrays.fail(types, "carrier " + std::to_string(row) + " has the type " +
+                                       std::to_string(type_of_row[row]) +
+                                       ", which must be 10 (tetrahedron), 12 (hexahedron), 13 "
+                                       "(wedge) or 14 (pyramid)");
+            std::array<Vec3, topology::max_corners> x;
+            const double* at = numbers.data() + size * row;
+            for (std::size_t k = 0; k < size / 3; ++k) x[k] = Vec3(at + 3 * k);
+            result_.mesh.carriers.corners.emplace_back(*kind, std::span(x).first(size / 3));
         }
     }
 
@@ -190,14 +209,11 @@ class VtuReader {
             const auto ends = arrays.integers(required(arrays, cells, node, "offsets"), num_cells);
             piece.offsets.insert(piece.offsets.end(), ends.begin(), ends.end());
             check_offsets(piece.offsets, location);
-            // Bounds the allocation below. LZMA has the highest compression ratio.
-            const auto most = file_.bytes.size() * max_expansion(Compressor::lzma);
-            if (static_cast<std::uint64_t>(piece.offsets.back()) > most)
-                throw InputError(location + ": the last cell ends at offset " +
-                                 std::to_string(piece.offsets.back()) +
-                                 ", more than a file of this size can hold; it is damaged");
-            piece.connectivity = arrays.integers(required(arrays, cells, node, "connectivity"),
-                                                 static_cast<std::size_t>(piece.offsets.back()));
+            piece.connectivity =
+                arrays.integers(required(arrays, cells, node, "connectivity"),
+                                possible_count(piece.offsets.back(), "the last cell", location));
+            if (std::ranges::count(piece.types, vtk_cell_type(CellKind::polyhedron)) > 0)
+                read_faces(arrays, node, location, piece);
             const auto regions = named(node.child("CellData"), options_.region_array);
             if (regions) {
                 if (arrays.num_components(regions) != 1)
@@ -217,7 +233,8 @@ class VtuReader {
                 return arrays.integers(array, num_cells);
             };
             piece.carriers = read_numbers(carrier_array, "carriers");
-            piece.cut_faces = read_numbers(cut_faces_array, "cut faces");
+            for (std::size_t k = 0; named(node.child("CellData"), cut_faces_array(k)); ++k)
+                piece.cut_faces.push_back(read_numbers(cut_faces_array(k).c_str(), "cut faces"));
             for (const auto& name : options_.vector_arrays) {
                 const auto array = named(node.child("CellData"), name);
                 if (!array)
@@ -230,6 +247,43 @@ class VtuReader {
             }
         }
         append_piece(piece, location, result_, collector_);
+    }
+
+    /// Reads the faces of polyhedra: the array `faces`, and by cell where its faces end in it, or
+    /// -1.
+    void read_faces(const VtkXmlArrays& arrays, pugi::xml_node node, const std::string& location,
+                    VtkPiece& piece) const {
+        const auto cells = node.child("Cells");
+        if (!named(cells, "faces") && named(cells, "face_connectivity"))
+            arrays.fail(cells,
+                        "has the faces of polyhedra as VTK 9.4 writes them, which cannot be "
+                        "read; write the file with VTK 9.3 or older");
+        const auto ends = required(arrays, cells, node, "faceoffsets");
+        piece.face_ends = arrays.integers(ends, piece.types.size());
+        piece.face_begins = piece.face_ends;
+        std::int64_t last = 0;
+        for (std::size_t c = 0; c < piece.types.size(); ++c) {
+            if (piece.types[c] != vtk_cell_type(CellKind::polyhedron)) continue;
+            piece.face_begins[c] = last;
+            if (piece.face_ends[c] < last)
+                arrays.fail(ends, "the faces of cell " + std::to_string(c) + " end at " +
+                                      std::to_string(piece.face_ends[c]) +
+                                      ", before they begin at " + std::to_string(last));
+            last = piece.face_ends[c];
+        }
+        piece.faces = arrays.integers(required(arrays, cells, node, "faces"),
+                                      possible_count(last, "the last polyhedron", location));
+    }
+
+    /// Returns the end of a list. Throws InputError if a file of this size cannot hold it, which
+    /// bounds the memory. LZMA has the highest compression ratio.
+    std::size_t possible_count(std::int64_t end, const char* what,
+                               const std::string& location) const {
+        const auto most = file_.bytes.size() * max_expansion(Compressor::lzma);
+        if (static_cast<std::uint64_t>(end) > most)
+            throw InputError(location + ": " + what + " ends at offset " + std::to_string(end) +
+                             ", more than a file of this size can hold; it is damaged");
+        return static_cast<std::size_t>(end);
     }
 
     /// Returns the array of the rest positions: rest_position in a frame of a run, else Points.

@@ -38,21 +38,11 @@ namespace {
 using topology::CellKind;
 using topology::MeshData;
 
-constexpr unsigned char vtk_cell_type(CellKind kind) {
-    switch (kind) {
-        case CellKind::tetrahedron:
-            return VTK_TETRA;
-        case CellKind::hexahedron:
-            return VTK_HEXAHEDRON;
-        case CellKind::wedge:
-            return VTK_WEDGE;
-        case CellKind::pyramid:
-            return VTK_PYRAMID;
-        case CellKind::polyhedron:
-            return VTK_POLYHEDRON;
-    }
-    return VTK_EMPTY_CELL;
-}
+static_assert(vtk_cell_type(CellKind::tetrahedron) == VTK_TETRA &&
+              vtk_cell_type(CellKind::hexahedron) == VTK_HEXAHEDRON &&
+              vtk_cell_type(CellKind::wedge) == VTK_WEDGE &&
+              vtk_cell_type(CellKind::pyramid) == VTK_PYRAMID &&
+              vtk_cell_type(CellKind::polyhedron) == VTK_POLYHEDRON);
 
 /// Returns a VTK array that shares the memory of `values` and only reads it.
 /// @lifetime  the values must outlive the array
@@ -78,7 +68,7 @@ vtkSmartPointer<Array> copy_as_array(const auto& values) {
 
 template <class IndexArray>
 void set_cells(vtkUnstructuredGrid& grid, const MeshData& mesh) {
-    std::vector<unsigned char> types(mesh.num_cells());
+    std::vector<int> types(mesh.num_cells());
     std::transform(mesh.kinds.begin(), mesh.kinds.end(), types.begin(), vtk_cell_type);
     vtkNew<vtkCellArray> cells;
     cells->SetData(copy_as_array<IndexArray>(mesh.offsets),
@@ -140,12 +130,40 @@ void add_carriers(vtkUnstructuredGrid& grid, const MeshData& mesh) {
     const auto of_cell = view_as_array<std::int64_t>(carriers.of_cell, 1);
     of_cell->SetName(carrier_array);
     grid.GetCellData()->AddArray(of_cell);
-    static_assert(sizeof(carriers.corners[0]) == 12 * sizeof(double));
-    const double* coordinates =
-        carriers.corners.empty() ? nullptr : carriers.corners.front().front().data();
-    const auto corners = view_as_array<double>({coordinates, 12 * carriers.corners.size()}, 12);
+    const bool are_tetrahedra = std::ranges::all_of(carriers.corners, [](const auto& corners) {
+        return corners.kind() == CellKind::tetrahedron;
+    });
+    const std::size_t size = are_tetrahedra ? 4 : topology::max_corners;
+    std::vector<double> coordinates;
+    coordinates.reserve(3 * size * carriers.corners.size());
+    for (const auto& corners : carriers.corners) {
+        for (const Vec3& x : corners) coordinates.insert(coordinates.end(), x.begin(), x.end());
+        coordinates.resize(coordinates.size() + 3 * (size - corners.size()));
+    }
+    const auto corners = copy_as_array<vtkDoubleArray>(coordinates);
+    corners->SetNumberOfComponents(static_cast<int>(3 * size));
     corners->SetName(carrier_corners_array);
     grid.GetFieldData()->AddArray(corners);
+    if (are_tetrahedra) return;
+    std::vector<int> types;
+    for (const auto& of_row : carriers.corners) types.push_back(vtk_cell_type(of_row.kind()));
+    const auto type_of_row = copy_as_array<vtkTypeInt32Array>(types);
+    type_of_row->SetName(carrier_types_array);
+    grid.GetFieldData()->AddArray(type_of_row);
+}
+
+void add_cut_faces(vtkUnstructuredGrid& grid, const MeshData& mesh) {
+    for (std::size_t k = 0; k <= mesh.further_cut_faces.size(); ++k) {
+        const auto& faces = k == 0 ? mesh.cut_faces : mesh.further_cut_faces[k - 1];
+        if (faces.empty()) continue;
+        if (faces.size() != mesh.num_cells())
+            throw std::invalid_argument("there are " + cut_faces_array(k) + " for " +
+                                        std::to_string(faces.size()) + " cells, not " +
+                                        std::to_string(mesh.num_cells()));
+        const auto cut_faces = view_as_array<std::int32_t>(faces, 1);
+        cut_faces->SetName(cut_faces_array(k).c_str());
+        grid.GetCellData()->AddArray(cut_faces);
+    }
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> view_as_grid(const Frame& frame) {
@@ -173,15 +191,7 @@ vtkSmartPointer<vtkUnstructuredGrid> view_as_grid(const Frame& frame) {
     grid->GetCellData()->AddArray(regions);
 
     if (!mesh.carriers.is_empty()) add_carriers(*grid, mesh);
-    if (!mesh.cut_faces.empty()) {
-        if (mesh.cut_faces.size() != mesh.num_cells())
-            throw std::invalid_argument("there are cut_faces for " +
-                                        std::to_string(mesh.cut_faces.size()) + " cells, not " +
-                                        std::to_string(mesh.num_cells()));
-        const auto cut_faces = view_as_array<std::int32_t>(mesh.cut_faces, 1);
-        cut_faces->SetName(cut_faces_array);
-        grid->GetCellData()->AddArray(cut_faces);
-    }
+    add_cut_faces(*grid, mesh);
     add_fields(*grid->GetPointData(), frame.point_fields, mesh.points.size(), "point");
     add_fields(*grid->GetCellData(), frame.cell_fields, mesh.num_cells(), "cell");
     set_active_vectors(*grid->GetPointData(), frame.active_vectors);

@@ -413,6 +413,41 @@ TEST_F(Cut, DividesHexahedraExactly) {
     EXPECT_NE(outcome.err.find("has no polyhedra, and cell "), std::string::npos) << outcome.err;
 }
 
+TEST_F(Cut, GoesOnWithHexahedraThatItHasCut) {
+    cut("--plane 0.55,0,0,1,0,0", "bricks.vtu");
+    std::filesystem::rename(folder_ / "out.vtu", folder_ / "once.vtu");
+    const auto info = json::parse(run("info --json once.vtu").out);
+    EXPECT_EQ(info["hexes"], 48);
+    EXPECT_EQ(info["polyhedra"], 32);
+    EXPECT_EQ(info["polyhedra_are_parts_of"],
+              (json{{"tets", 0}, {"hexes", 16}, {"wedges", 0}, {"pyramids", 0}}));
+    EXPECT_EQ(info["components"], 2);
+    EXPECT_EQ(info["fragments"], 80);
+    EXPECT_NEAR(info["volume"].get<double>(), 1.0, 1e-13);
+    EXPECT_NE(run("info once.vtu").out.find("polyhedra        32, parts of 16 hexahedra\n"),
+              std::string::npos);
+    EXPECT_EQ(run("check once.vtu").out.find("once.vtu: OK, mesh with "), 0u);
+
+    const std::string oblique = "--plane 0.5,0.5,0.5,-0.2,1,0.4";
+    const auto twice = cut(oblique, "once.vtu");
+    EXPECT_EQ(twice["pieces"].size(), 4u);
+    std::filesystem::rename(folder_ / "out.vtu", folder_ / "twice.vtu");
+    cut("--plane 0.55,0,0,1,0,0 " + oblique, "bricks.vtu");
+    EXPECT_EQ(support::read_text(folder_ / "twice.vtu"), support::read_text(folder_ / "out.vtu"));
+    EXPECT_EQ(cut("--plane 0.55,0,0,1,0,0", "once.vtu")["crossed"], 0);
+
+    EXPECT_EQ(run("convert once.vtu copy.vtu").err, "");
+    EXPECT_EQ(support::read_text(folder_ / "copy.vtu"), support::read_text(folder_ / "once.vtu"));
+    const auto for_viewers = run("convert once.vtu copy.vtk");
+    EXPECT_EQ(for_viewers.status, 0);
+    EXPECT_NE(for_viewers.err.find("polyhedra have no forces"), std::string::npos);
+    const auto refused = run("check copy.vtk");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.err.find("copy.vtk: cell 32 (polyhedron) and 31 more without a carrier"),
+              std::string::npos)
+        << refused.err;
+}
+
 TEST_F(Cut, ReportsOutputFailures) {
     for (const auto* arguments : {"--out no/such/out.vtu", "--out out.vtu --json no/such/a.json"}) {
         const auto outcome = run("cut box.vtu --plane 0.3,0,0,1,0,0 " + std::string(arguments));

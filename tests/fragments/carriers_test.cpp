@@ -1,7 +1,5 @@
 // Carriers of a cut body: written from its fragments, they give the same fragments again.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/fragments/carriers.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,30 +17,12 @@
 #include "support/fragment_shape.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
+#include "tests/fragments/round_trip.h"
 
 namespace incise::fragments {
 namespace {
 
 using namespace topology;
-
-MeshData written(const Mesh& material, const FragmentMesh& fragments) {
-    MeshData data = to_mesh_data(material, material.rest_positions());
-    data.carriers = carriers_of(material, fragments);
-    data.points_may_coincide = true;
-    return data;
-}
-
-/// Returns the fragments with the cells named by their rows in a file.
-test::FragmentShape shape_in_file(const Mesh& material, const FragmentMesh& fragments) {
-    std::vector<std::int64_t> row(material.element_capacity(), -1);
-    std::int64_t next = 0;
-    for (const CellId cell : material.elements()) row[cell.index()] = next++;
-    return test::shape_of(fragments, [&](CellId cell) { return row[cell.index()]; });
-}
-
-test::FragmentShape shape_by_label(const Mesh& material, const FragmentMesh& fragments) {
-    return test::shape_of(fragments, [&](CellId cell) { return material.label(cell); });
-}
 
 std::size_t num_carried_away(const Mesh& material, const FragmentMesh& fragments) {
     std::size_t count = 0;
@@ -53,26 +33,6 @@ std::size_t num_carried_away(const Mesh& material, const FragmentMesh& fragments
 std::size_t num_faces_closed_by_file(const Mesh& material) {
     const Mesh read = Mesh::build(to_mesh_data(material, material.rest_positions())).mesh;
     return boundary_faces(material).size() - boundary_faces(read).size();
-}
-
-/// Writes and builds the body, and reports what is not as before.
-BuiltMesh expect_round_trip(const Mesh& material, const FragmentMesh& fragments) {
-    const MeshData data = written(material, fragments);
-    BuiltMesh built = Mesh::build(data);
-    EXPECT_TRUE(built.warnings.empty());
-    const FragmentMesh read(built.mesh);
-    EXPECT_EQ(validate(built.mesh), std::vector<std::string>());
-    EXPECT_EQ(validate(read, built.mesh), std::vector<std::string>());
-    EXPECT_EQ(read.num_elements(), fragments.num_elements());
-    EXPECT_EQ(read.num_nodes(), fragments.num_nodes());
-    EXPECT_TRUE(shape_by_label(built.mesh, read) == shape_in_file(material, fragments));
-    EXPECT_TRUE(carriers_of(built.mesh, read) == data.carriers);
-
-    ArchiveWriter out;
-    save(read, out);
-    ArchiveReader in(out.bytes());
-    EXPECT_TRUE(load_fragments(built.mesh, in) == read);
-    return built;
 }
 
 TEST(Carriers, AreLeftOutOfABodyWithoutDivisions) {

@@ -259,9 +259,9 @@ $EndElements
 }
 
 TEST(HigherOrder, StaysRefusedWhereTheCornersAreNotKnown) {
-    Forms forms = {{{"26", 15}, {"25", 20}, {"27", 13}, {"42", 10}}};
+    Forms forms = {{{"26", 15}, {"25", 20}, {"27", 13}, {"41", 10}}};
     EXPECT_THAT(refusal("a.vtu", vtu_text_of(forms), linear),
-                StartsWith("a.vtu: cell 3: a polyhedron (VTK cell type 42) cannot be used"));
+                StartsWith("a.vtu: cell 3: a convex point set (VTK cell type 41) cannot be used"));
     forms[0] = {"72", 6};
     EXPECT_EQ(refusal("a.vtu", vtu_text_of(forms), linear),
               "a.vtu: cell 0: a Lagrange hexahedron has at least 8 nodes, this one has 6");

@@ -146,8 +146,9 @@ TEST(VtuReader, TakesTheCarriersOfACutBody) {
     EXPECT_THAT(mesh.carriers.of_cell, ElementsAre(0, -1));
     EXPECT_TRUE(mesh.points_may_coincide);
     EXPECT_THAT(mesh.carriers.corners,
-                ElementsAre(std::array<Vec3, 4>{Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, 1, 0),
-                                                Vec3(0, 0, 1)}));
+                ElementsAre(topology::CarrierCorners(
+                    topology::CellKind::tetrahedron,
+                    std::array{Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})));
     // Cells that are left out have no carrier.
     const auto with_triangle =
         read_bytes("a.vtu", replaced(replaced(cut_tetrahedra(), ">10 10<", ">5 10<"),
@@ -238,7 +239,8 @@ const std::vector<Fault> vtu_faults = {
     // Cells of unsupported kinds.
     {">10 10<", ">10 24<",
      "a.vtu: cell 1: a quadratic tetrahedron (VTK cell type 24)...export linear elements..."},
-    {">10 10<", ">42 10<", "...cell 0: a polyhedron..."},
+    {">10 10<", ">41 10<", "...cell 0: a convex point set..."},
+    {">10 10<", ">42 10<", "...has no 'faceoffsets' array in Cells..."},
     {">10 10<", ">10 99<", "...cell 1: cell type 99..."},
     // Surfaces without volume.
     {">10 10<", ">9 9<", "a.vtu: holds 2 quadrilaterals but no tetrahedra..."},

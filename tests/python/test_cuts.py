@@ -120,6 +120,35 @@ class Cuts(unittest.TestCase):
         body.step()
         self.assertEqual(body.ledger()["components"], 2)
 
+    def test_cut_hexahedra_go_through_files(self) -> None:
+        bricks = incise.Mesh.box([1, 1, 1], [2, 2, 2], "hex")
+        first, second = ([0.4, 0, 0], [1, 0, 0.1]), ([0, 0.4, 0], [0.2, 1, 0])
+        once = incise.cut(bricks, planes=[first]).mesh
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "cut.vtu"
+            once.write(path)
+            read = incise.read_mesh(path)
+        faces = read.cells["polyhedron"]
+        np.testing.assert_array_equal(faces, once.cells["polyhedron"])
+        num_polyhedra, at = 0, 0
+        while at < len(faces):
+            num_polyhedra += 1
+            num_faces, at = faces[at], at + 1
+            for _ in range(num_faces):
+                self.assertTrue((faces[at + 1:at + 1 + faces[at]] < read.num_points).all())
+                at += 1 + faces[at]
+        self.assertEqual(at, len(faces))
+        self.assertEqual(num_polyhedra, len(read.regions["polyhedron"]))
+        self.assertAlmostEqual(read.volume, 1.0)
+        self.assertAlmostEqual(read.surface_area, once.surface_area)
+        again = incise.cut(read, planes=[second]).mesh
+        at_once = incise.cut(bricks, planes=[first, second]).mesh
+        np.testing.assert_array_equal(again.points, at_once.points)
+        np.testing.assert_array_equal(again.cells["polyhedron"], at_once.cells["polyhedron"])
+        body = incise.World(mesh=read, materials=[support.MATERIAL])
+        body.step()
+        self.assertEqual(body.ledger()["components"], 2)
+
 
 if __name__ == "__main__":
     unittest.main()

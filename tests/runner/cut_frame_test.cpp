@@ -3,8 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
 #include <ostream>
+#include <span>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "incise/base/error.h"
 #include "incise/fragments/validate.h"
@@ -12,8 +18,11 @@
 #include "incise/io/vtk/vtu_writer.h"
 #include "incise/runner/frame_builder.h"
 #include "incise/scenario/body.h"
+#include "incise/topology/geometry.h"
+#include "incise/topology/source_faces.h"
 #include "run_folder.h"
 #include "support/fragment_shape.h"
+#include "support/mesh_families.h"
 
 namespace incise::runner {
 namespace {
@@ -62,9 +71,28 @@ test::FragmentShape shape_in_file(const Mesh& mesh, const FragmentMesh& fragment
     return test::shape_of(fragments, [&](CellId e) { return row[e.index()]; });
 }
 
+/// The mesh of the cube, of other cells.
+const std::string of_bricks =
+    "[mesh]\nbox = { size = [0.1, 0.1, 0.1], cells = [3, 3, 3], element = \"hex\" }\n";
+const std::string of_file = "[mesh]\nfile = \"cube.vtu\"\n";
+
+/// Writes a jittered cube of hexahedra, wedges and pyramids.
+void write_mixed_cube(const RunFolder& folder) {
+    topology::MeshData cube = test::brick_cube(test::Bricks::mixed, 3, 0.1, 5);
+    cube.scale(0.1);
+    io::write_mesh(folder / "cube.vtu", cube);
+}
+
 struct Tools {
     std::string name, text;
+    std::string mesh = {};  ///< in place of that of soft_cube
 };
+
+std::string scene_of(const Tools& tools) {
+    return (tools.mesh.empty() ? soft_cube
+                               : tools.mesh + soft_cube.substr(soft_cube.find("[[material]]"))) +
+           tools.text;
+}
 
 std::ostream& operator<<(std::ostream& out, const Tools& tools) { return out << tools.name; }
 
@@ -72,7 +100,8 @@ class CutFrame : public testing::TestWithParam<Tools> {};
 
 TEST_P(CutFrame, ReadAsAMeshIsTheBodyAtRest) {
     const RunFolder folder;
-    Simulation written(folder.scenario(soft_cube + GetParam().text + while_falling));
+    write_mixed_cube(folder);
+    Simulation written(folder.scenario(scene_of(GetParam()) + while_falling));
     run(written);
     ASSERT_GT(written.edits().size(), 0u);
     const auto frame = build_frame(written.model(), written.time(), some_fields);
@@ -99,6 +128,12 @@ TEST_P(CutFrame, ReadAsAMeshIsTheBodyAtRest) {
         for (const NodeId n : after.corners(e))
             EXPECT_EQ(read.model().positions()[n.index()], after.rest_position(n));
     EXPECT_LT(read.model().energetics().totals().elastic_energy, 1e-20);
+    const auto volume_of = [](const Mesh& mesh) {
+        double volume = 0.0;
+        for (const CellId e : mesh.elements()) volume += topology::rest_volume(mesh, e);
+        return volume;
+    };
+    EXPECT_EQ(volume_of(read.mesh()), volume_of(written.mesh()));
     run(read);
     EXPECT_EQ(read.warnings(), std::vector<std::string>{});
 
@@ -111,7 +146,8 @@ TEST_P(CutFrame, ReadAsAMeshIsTheBodyAtRest) {
 
 TEST_P(CutFrame, IsScaledWithItsCarriers) {
     const RunFolder folder;
-    Simulation written(folder.scenario(soft_cube + GetParam().text + while_falling));
+    write_mixed_cube(folder);
+    Simulation written(folder.scenario(scene_of(GetParam()) + while_falling));
     run(written);
     io::write_vtu(folder / "frame.vtu", build_frame(written.model(), written.time(), {}));
     std::string text = from_file(soft_cube);
@@ -124,7 +160,12 @@ INSTANTIATE_TEST_SUITE_P(
     Tools, CutFrame,
     testing::Values(Tools{"BladeThrough", blade_through}, Tools{"BladeHalfway", blade_halfway},
                     Tools{"Plane", plane_cut}, Tools{"TwoCuts", blade_halfway + plane_cut},
-                    Tools{"TwoCutsAndACarver", blade_through + plane_cut + ball_carver}),
+                    Tools{"TwoCutsAndACarver", blade_through + plane_cut + ball_carver},
+                    Tools{"BladeThroughHexahedra", blade_through, of_bricks},
+                    Tools{"BladeHalfwayInHexahedra", blade_halfway, of_bricks},
+                    Tools{"PlaneThroughMixed", plane_cut, of_file},
+                    Tools{"TwoCutsAndACarverOfMixed", blade_through + plane_cut + ball_carver,
+                          of_file}),
     [](const auto& tools) { return tools.param.name; });
 
 TEST(FrameOfACutBody, GivesFragmentsTheirFibres) {
@@ -170,6 +211,88 @@ TEST(FrameOfACutBody, HasTheMomentumOfItsPhysics) {
     EXPECT_LT((momentum - expected).norm(), 1e-12 * expected.norm());
     io::write_vtu(folder / "frame.vtu", frame);
     EXPECT_EQ(io::read_mesh(folder / "frame.vtu").mesh.num_cells(), frame.mesh.num_cells());
+}
+
+TEST(FrameOfACutBody, HasTetrahedraInPlaceOfPolyhedra) {
+    const RunFolder folder;
+    write_mixed_cube(folder);
+    Simulation simulation(folder.scenario(scene_of({"", blade_halfway + plane_cut, of_file}) +
+                                          while_falling +
+                                          "[output]\ncells = \"tetrahedra\"\nphysics = true\n"));
+    run(simulation);
+    std::vector<scenario::Field> fields = simulation.scenario().output.fields;
+    ASSERT_EQ(std::erase(fields, scenario::Field::tetrahedra), 1u);
+    const auto polyhedra = build_frame(simulation.model(), 0.04, fields);
+    const auto frame = build_frame(simulation.model(), 0.04, simulation.scenario().output.fields);
+    EXPECT_EQ(std::ranges::count(frame.mesh.kinds, topology::CellKind::polyhedron), 0);
+    EXPECT_GT(std::ranges::count(polyhedra.mesh.kinds, topology::CellKind::polyhedron), 10);
+    EXPECT_TRUE(frame.mesh.carriers.is_empty());
+    const topology::SourceFaces faces(frame.mesh), faces_before(polyhedra.mesh);
+    const auto field = [](const std::vector<io::Field>& all, const std::string& name) {
+        return *std::ranges::find(all, name, &io::Field::name);
+    };
+    const auto ids =
+        std::get<std::vector<std::int64_t>>(field(frame.cell_fields, "element_id").values);
+    const auto ids_before =
+        std::get<std::vector<std::int64_t>>(field(polyhedra.cell_fields, "element_id").values);
+    // By element: its volume, the area of its faces on cuts, and its fields.
+    const auto sums_of = [&](const io::Frame& of, const topology::SourceFaces& its_faces,
+                             const std::vector<std::int64_t>& elements) {
+        const auto stress = std::get<std::vector<float>>(field(of.cell_fields, "von_mises").values);
+        std::map<std::int64_t, std::array<double, 3>> sums;
+        for (std::size_t c = 0; c < of.mesh.num_cells(); ++c) {
+            auto& [volume, area, value] = sums[elements[c]];
+            volume += its_faces.volume(c);
+            value = static_cast<double>(stress[c]);
+            for (int f = 0; f < its_faces.num_faces(c); ++f)
+                if (of.mesh.is_on_cut(c, f))
+                    area += topology::area_vector(its_faces.size({c, f}), [&](int p) {
+                                return its_faces.position({c, f}, p);
+                            }).norm();
+        }
+        return sums;
+    };
+    const auto sums = sums_of(frame, faces, ids),
+               sums_before = sums_of(polyhedra, faces_before, ids_before);
+    ASSERT_EQ(sums.size(), sums_before.size());
+    constexpr double brick = 0.1 * 0.1 * 0.1 / 27.0;  // m3
+    double cut_area = 0.0, cut_area_before = 0.0;
+    for (const auto& [e, before] : sums_before) {
+        EXPECT_NEAR(sums.at(e)[0], before[0], 1e-12 * brick);
+        EXPECT_EQ(sums.at(e)[2], before[2]);
+        cut_area += sums.at(e)[1];
+        cut_area_before += before[1];
+    }
+    // Bent faces have more area in triangles.
+    EXPECT_GT(cut_area_before, 0.0);
+    EXPECT_NEAR(cut_area, cut_area_before, 0.02 * cut_area_before);
+    for (const char* name : {"mass", "force"}) {
+        const auto sum = [&](const io::Frame& of) {
+            double total = 0.0;
+            std::visit(
+                [&](const auto& values) {
+                    for (const auto v : values) total += static_cast<double>(v);
+                },
+                field(of.point_fields, name).values);
+            return total;
+        };
+        EXPECT_EQ(sum(frame), sum(polyhedra)) << name;
+    }
+    for (const io::Field& of_points : frame.point_fields)
+        EXPECT_EQ(of_points.size(),
+                  frame.mesh.points.size() * static_cast<std::size_t>(of_points.components));
+    io::write_vtu(folder / "frame.vtu", frame);
+    EXPECT_EQ(io::read_mesh(folder / "frame.vtu").mesh.num_cells(), frame.mesh.num_cells());
+}
+
+TEST(FrameOfACutBody, WithoutPolyhedraIsTheSameInTetrahedra) {
+    const RunFolder folder;
+    Simulation simulation(folder.scenario(soft_cube + plane_cut + while_falling));
+    run(simulation);
+    const std::vector<scenario::Field> tetrahedra{scenario::Field::mass,
+                                                  scenario::Field::tetrahedra};
+    EXPECT_EQ(io::vtu_text(build_frame(simulation.model(), 0.0, tetrahedra)),
+              io::vtu_text(build_frame(simulation.model(), 0.0, std::span(tetrahedra).first(1))));
 }
 
 TEST(FrameOfACutBody, OfABodyWithoutDivisionsHasNoCarriers) {

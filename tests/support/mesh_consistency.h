@@ -5,6 +5,7 @@
 #include <string>
 
 #include "incise/topology/mesh_data.h"
+#include "incise/topology/polyhedron_check.h"
 
 namespace incise::support {
 
@@ -17,7 +18,8 @@ inline std::string inconsistency_of(const topology::MeshData& mesh) {
     for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
         const auto corners = mesh.cell(c);
         const auto name = "cell " + std::to_string(c);
-        if (corners.size() != static_cast<std::size_t>(topology::traits(mesh.kinds[c]).num_corners))
+        if (mesh.kinds[c] != topology::CellKind::polyhedron &&
+            corners.size() != static_cast<std::size_t>(topology::traits(mesh.kinds[c]).num_corners))
             return name + " has " + std::to_string(corners.size()) + " corners";
         for (const auto corner : corners) {
             if (corner < 0 || static_cast<std::size_t>(corner) >= mesh.points.size())
@@ -26,7 +28,7 @@ inline std::string inconsistency_of(const topology::MeshData& mesh) {
                 return name + " has a point that is not finite";
         }
     }
-    return {};
+    return topology::fault_of_face_lists(mesh);
 }
 
 }  // namespace incise::support

@@ -89,7 +89,7 @@ TEST(LinearCellComplex, IsTheSameAfterCgalsOwnFile) {
         carriers.of_cell.assign(mesh.num_elements(), Carriers::whole);
         if (mesh.kind(*mesh.elements().begin()) == CellKind::tetrahedron) {
             carriers.of_cell[0] = 0;
-            std::array<Vec3, 4>& corners = carriers.corners.emplace_back();
+            CarrierCorners& corners = carriers.corners.emplace_back();
             for (std::size_t k = 0; k < 4; ++k)
                 corners[k] = mesh.rest_position(mesh.corners(*mesh.elements().begin())[k]);
         }
