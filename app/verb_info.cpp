@@ -27,7 +27,7 @@ struct MeshInfo {
     int num_components = 0;
     topology::MeshMetrics metrics;
     std::optional<cutting::FragmentCounts> fragments;  ///< of a body that was cut
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings, joins;
 
     double min_dihedral_degrees() const {
         return metrics.min_dihedral_angle * 180.0 / std::numbers::pi;
@@ -43,6 +43,7 @@ MeshInfo look_at(const InfoOptions& options) {
     try {
         const auto built = topology::Mesh::build(file.mesh, scenario::weld_advice());
         info.warnings.insert(info.warnings.end(), built.warnings.begin(), built.warnings.end());
+        info.joins = built.joins;
         info.num_components = topology::components(built.mesh).count;
         info.metrics = topology::measure(file.mesh);
         if (!file.mesh.carriers.is_empty())
@@ -61,6 +62,7 @@ nlohmann::ordered_json as_json(const MeshInfo& info) {
     for (std::size_t kind = 0; kind < std::size(keys); ++kind)
         json[keys[kind]] = m.num_of_kind[kind];
     json["components"] = info.num_components;
+    if (!info.joins.empty()) json["joins"] = info.joins;
     json["volume"] = m.volume;
     json["surface_area"] = m.surface_area;
     json["bounding_box"] = {{"min", {m.box_min.x(), m.box_min.y(), m.box_min.z()}},
@@ -89,6 +91,7 @@ void print_text(const MeshInfo& info) {
             std::printf("%-16s %zu\n", topology::cell_traits[kind].plural, m.num_of_kind[kind]);
     for (const auto& [region, cells] : m.cells_of_region)
         std::printf("region %-9d %zu %s\n", region, cells, cells == 1 ? "cell" : "cells");
+    for (const std::string& line : info.joins) std::printf("%s\n", line.c_str());
     std::printf("components       %d\n", info.num_components);
     std::printf("bounding box     %.6g %.6g %.6g to %.6g %.6g %.6g\n", m.box_min.x(), m.box_min.y(),
                 m.box_min.z(), m.box_max.x(), m.box_max.y(), m.box_max.z());

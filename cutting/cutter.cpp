@@ -262,15 +262,16 @@ void Cutter::find_opened(const Mesh& mesh, const ChangeSet& changes) {
         const Vec3& x = mesh.rest_position(n);
         Vec3 outwards = Vec3::Zero();
         double area = 0.0, longest = 0.0;
-        for (const CellId e : star)
+        for (const CellId e : star) {
+            const bool is_whole = mesh.whole_cell(e).has_value();
             for (int f = 0; f < mesh.num_faces(e); ++f) {
                 const FaceId face{e, f};
                 const int size = mesh.face_size(face);
                 for (int p = 0; p < size; ++p) {
                     const VertexId at = mesh.face_corner(face, p);
                     longest = std::max(longest, (mesh.rest_position(at) - x).norm());
-                    // Faces of other cells were opened whole, or lie beside what was removed.
-                    if (at != n || !mesh.is_polyhedron(e) || !mesh.is_on_cut(face)) continue;
+                    // Faces of whole cells were opened whole, or lie beside what was removed.
+                    if (at != n || is_whole || !mesh.is_on_cut(face)) continue;
                     const VertexId previous = mesh.face_corner(face, (p + size - 1) % size),
                                    next = mesh.face_corner(face, (p + 1) % size);
                     const Vec3 normal =
@@ -280,6 +281,7 @@ void Cutter::find_opened(const Mesh& mesh, const ChangeSet& changes) {
                     opened.around.emplace_back(previous, next);
                 }
             }
+        }
         // At the end of a cut, both of its sides meet.
         constexpr double least_share = 0.1;
         if (!(outwards.norm() > least_share * area)) continue;

@@ -15,6 +15,7 @@
 #include "incise/topology/corner_check.h"
 #include "incise/topology/flat_cell.h"
 #include "incise/topology/geometry.h"
+#include "incise/topology/joined_quads.h"
 #include "incise/topology/mesh_repair.h"
 
 namespace incise::topology {
@@ -339,9 +340,11 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
     }
 
     const std::vector<FaceKey> faces = sorted_faces(data, usable);
+    std::vector<SourceFace> boundary;
     for (std::size_t i = 0; i < faces.size();) {
         std::size_t end = i + 1;
         while (end < faces.size() && faces[end].points == faces[i].points) ++end;
+        if (end - i == 1) boundary.push_back(faces[i].face);
         if (end - i == 2) {
             const SourceFace a = faces[i].face, b = faces[i + 1].face;
             check_pair(data, a, b, sound[a.cell] && sound[b.cell], result, errors);
@@ -355,6 +358,7 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
     }
     std::sort(result.shared_faces.begin(), result.shared_faces.end(),
               [](const SharedFace& a, const SharedFace& b) { return a.a < b.a; });
+    result.joined_quads = find_joined_quads(data, boundary);
     errors.finish();
     warnings.finish();
     if (result.errors.empty())

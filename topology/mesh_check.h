@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <compare>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -10,18 +10,19 @@
 
 namespace incise::topology {
 
-/// A face of a cell of the source.
-struct SourceFace {
-    std::size_t cell = 0;
-    int face = 0;
-    auto operator<=>(const SourceFace&) const = default;
-};
-
 /// Two cells that share a face. `shift` is the position in b's face of the point at position 0 of
 /// a's face.
 struct SharedFace {
     SourceFace a, b;
     int shift = 0;
+};
+
+/// A quadrilateral that is joined to two triangles of other cells: see find_joined_quads().
+struct JoinedQuad {
+    SourceFace quad;
+    int first_end = 0;  ///< see Diagonals
+    /// The one on the corners from the first end of the diagonal on, then the other.
+    std::array<SourceFace, 2> triangles = {};
 };
 
 /// The result of check().
@@ -34,6 +35,8 @@ struct MeshCheck {
     /// The shared faces, in ascending order of `a`. The list is complete only if there are no
     /// errors.
     std::vector<SharedFace> shared_faces;
+    /// The quadrilaterals that are joined to two triangles, in ascending order.
+    std::vector<JoinedQuad> joined_quads;
 };
 
 /// Checks mesh data. Errors are:

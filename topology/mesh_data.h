@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -29,6 +30,13 @@ struct Carriers {
 
 /// The number of faces that have a bit in MeshData::cut_faces.
 inline constexpr int max_cut_faces = 31;
+
+/// A face of a cell of the source.
+struct SourceFace {
+    std::size_t cell = 0;
+    int face = 0;
+    auto operator<=>(const SourceFace&) const = default;
+};
 
 /// Cells over points, numbered from 0 in the order of the source. The contents may be invalid:
 /// Mesh::build checks them.
@@ -61,6 +69,12 @@ struct MeshData {
     /// Returns the corners of cell `c`.
     std::span<const std::int64_t> cell(std::size_t c) const {
         return std::span(corners).subspan(offsets[c], offsets[c + 1] - offsets[c]);
+    }
+
+    /// Returns the point at a position in a face, in the order of cell_kind.h.
+    std::int64_t face_point(SourceFace f, int position) const {
+        const auto face = traits(kinds[f.cell]).face(f.face);
+        return cell(f.cell)[static_cast<std::size_t>(face[static_cast<std::size_t>(position)])];
     }
 
     /// Calls visit(cell, first) for each polyhedron, with the place of its number of faces in

@@ -121,12 +121,11 @@ double face_area(const MeshData& data, const SourceFace& face) {
     return 0.5 * (triangle(0, 1, 2) + triangle(0, 2, 3) + triangle(0, 1, 3) + triangle(1, 2, 3));
 }
 
-double surface_area(const MeshData& data, const std::vector<SharedFace>& shared_faces) {
+double surface_area(const MeshData& data, const MeshCheck& found) {
     std::vector<SourceFace> shared;
-    for (const auto& pair : shared_faces) {
-        shared.push_back(pair.a);
-        shared.push_back(pair.b);
-    }
+    for (const auto& pair : found.shared_faces) shared.insert(shared.end(), {pair.a, pair.b});
+    for (const JoinedQuad& joined : found.joined_quads)
+        shared.insert(shared.end(), {joined.quad, joined.triangles[0], joined.triangles[1]});
     std::sort(shared.begin(), shared.end());
     double area = 0.0;
     auto next = shared.begin();
@@ -139,6 +138,20 @@ double surface_area(const MeshData& data, const std::vector<SharedFace>& shared_
                 area += face_area(data, face);
         }
     return area;
+}
+
+/// Returns by how much cells grow as diagonals divide their quadrilaterals, m3. Between the two
+/// halves and the same about the mean of the corners is half a tetrahedron.
+double growth_by_diagonals(const MeshData& data, const std::vector<JoinedQuad>& joined_quads) {
+    double sum = 0.0;
+    for (const JoinedQuad& joined : joined_quads) {
+        std::array<Vec3, 4> x;
+        for (int p = 0; p < 4; ++p)
+            x[static_cast<std::size_t>(p)] = data.points[static_cast<std::size_t>(
+                data.face_point(joined.quad, (joined.first_end + p) % 4))];
+        sum -= 0.5 * tetrahedron_volume(x[0], x[1], x[2], x[3]);
+    }
+    return sum;
 }
 
 }  // namespace
@@ -160,15 +173,16 @@ double min_altitude(CellKind kind, std::span<const Vec3> corners) {
 }
 
 double min_altitude(const Mesh& mesh, CellId e) {
-    if (mesh.is_polyhedron(e)) {
+    const auto whole = mesh.whole_cell(e);
+    if (!whole) {
         double largest = 0.0;
         for (int f = 0; f < mesh.num_faces(e); ++f)
             largest = std::max(largest, rest_area(mesh, {e, f}));
         return 3.0 * rest_volume(mesh, e) / largest;
     }
     std::vector<Vec3> x;
-    for (const VertexId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
-    return min_altitude(mesh.kind(e), x);
+    for (const VertexId n : whole->corners()) x.push_back(mesh.rest_position(n));
+    return min_altitude(whole->kind, x);
 }
 
 ShapeMetrics measure_shapes(const Mesh& mesh) {
@@ -179,11 +193,12 @@ ShapeMetrics measure_shapes(const Mesh& mesh) {
     std::vector<Vec3> x;
     for (const CellId e : mesh.elements()) {
         x.clear();
-        for (const VertexId n : mesh.corners(e)) {
+        const auto whole = mesh.whole_cell(e);
+        for (const VertexId n : whole ? whole->corners() : mesh.corners(e)) {
             x.push_back(mesh.rest_position(n));
             shapes.box.extend(x.back());
         }
-        if (!mesh.is_polyhedron(e)) measure_cell(mesh.kind(e), x, metrics);
+        if (whole) measure_cell(whole->kind, x, metrics);
         shapes.min_altitude = std::min(shapes.min_altitude, min_altitude(mesh, e));
         for (int f = 0; f < mesh.num_faces(e); ++f)
             for (int p = 0; p < mesh.face_size({e, f}); ++p)
@@ -212,7 +227,8 @@ MeshMetrics measure(const MeshData& data) {
     MeshMetrics metrics;
     measure_cells(data, metrics);
     measure_edges(data, metrics);
-    metrics.surface_area = surface_area(data, found.shared_faces);
+    metrics.volume += growth_by_diagonals(data, found.joined_quads);
+    metrics.surface_area = surface_area(data, found);
     return metrics;
 }
 

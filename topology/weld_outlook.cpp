@@ -34,6 +34,8 @@ std::vector<SourceFace> boundary_of(const MeshData& data, const MeshCheck& check
         for (int f = 0; f < traits(data.kinds[c]).num_faces; ++f) all.push_back({c, f});
     for (const SharedFace& shared : checked.shared_faces)
         inner.insert(inner.end(), {shared.a, shared.b});
+    for (const JoinedQuad& joined : checked.joined_quads)
+        inner.insert(inner.end(), {joined.quad, joined.triangles[0], joined.triangles[1]});
     std::ranges::sort(inner);
     std::ranges::set_difference(all, inner, std::back_inserter(boundary));
     return boundary;
@@ -93,8 +95,13 @@ WeldOutlook outlook_of_weld(const MeshData& data) {
     std::ranges::set_difference(after.shared_faces, before.shared_faces, std::back_inserter(gained),
                                 {}, &SharedFace::a, &SharedFace::a);
     std::vector<bool> hangs_together(data.points.size(), false);
-    for (const SharedFace& shared : gained)
-        for (const std::size_t p : points_of(welded, shared.a)) hangs_together[p] = true;
+    const auto join = [&](SourceFace f) {
+        for (const std::size_t p : points_of(welded, f)) hangs_together[p] = true;
+    };
+    for (const SharedFace& shared : gained) join(shared.a);
+    for (const JoinedQuad& joined : after.joined_quads)
+        if (!std::ranges::binary_search(before.joined_quads, joined.quad, {}, &JoinedQuad::quad))
+            join(joined.quad);
     for (std::size_t p = 0; p < data.points.size(); ++p)
         if (welded.is_welded(p) && !hangs_together[static_cast<std::size_t>(welded.welded_to[p])])
             ++outlook.num_idle;
