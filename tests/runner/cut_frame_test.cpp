@@ -186,7 +186,9 @@ TEST(FrameOfABody, HasTheCellsOfTheSourceThatReadingJoinsAgain) {
     const RunFolder folder;
     topology::MeshData data = test::brick_cube(test::Bricks::joined, 2, 0.1, 3);
     data.scale(0.1);
-    io::write_vtu(folder / "frame.vtu", {data, {}, {}});
+    io::Frame source;
+    source.mesh = data;
+    io::write_vtu(folder / "frame.vtu", source);
     const std::string text = from_file(soft_cube);
     Simulation written(folder.scenario(text + while_falling));
     EXPECT_EQ(written.warnings(), std::vector<std::string>{});
