@@ -32,21 +32,21 @@ std::string joined(std::span<const std::string> lines) {
     return text;
 }
 
-std::optional<scenario::BodyFindings::Effort> add_body_findings(
-    const scenario::Scenario& scenario, std::vector<std::string>& errors,
-    std::vector<std::string>& warnings) {
+scenario::BodyFindings add_body_findings(const scenario::Scenario& scenario,
+                                         std::vector<std::string>& errors,
+                                         std::vector<std::string>& warnings) {
     try {
-        const scenario::BodyFindings body = scenario::check_body(scenario);
+        scenario::BodyFindings body = scenario::check_body(scenario);
         errors.insert(errors.end(), body.errors.begin(), body.errors.end());
         warnings.insert(warnings.end(), body.warnings.begin(), body.warnings.end());
-        return body.effort;
+        return body;
     } catch (const MemoryError& error) {
         if (errors.empty()) throw;
         errors.emplace_back(error.what());
     } catch (const std::bad_alloc&) {
         if (errors.empty()) throw;
     }
-    return std::nullopt;
+    return {};
 }
 
 scenario::Scenario load_scenario(const std::filesystem::path& file,

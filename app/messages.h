@@ -26,11 +26,11 @@ std::string joined(std::span<const std::string> lines);
 std::string prefixed(std::string_view prefix, std::string_view text);
 
 /// Appends the errors and warnings about the body of a scenario. If there is too little memory for
-/// the body, throws MemoryError or std::bad_alloc, but only if `errors` was empty. Returns how much
-/// the run has to do, if that is known.
-std::optional<scenario::BodyFindings::Effort> add_body_findings(const scenario::Scenario& scenario,
-                                                                std::vector<std::string>& errors,
-                                                                std::vector<std::string>& warnings);
+/// the body, throws MemoryError or std::bad_alloc, but only if `errors` was empty. Returns all that
+/// was found.
+scenario::BodyFindings add_body_findings(const scenario::Scenario& scenario,
+                                         std::vector<std::string>& errors,
+                                         std::vector<std::string>& warnings);
 
 /// Reads a scenario and prints its warnings. If there are errors, throws InputError with these and
 /// with the errors of the body, one a line.

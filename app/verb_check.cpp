@@ -28,9 +28,10 @@ namespace {
 
 struct Findings {
     std::vector<std::string> errors, warnings;
-    std::string summary;          ///< meaningful only without errors
-    std::string effort;           ///< of the run, as far as it is known
-    std::size_t num_printed = 0;  ///< of the errors, the first
+    std::string summary;                  ///< meaningful only without errors
+    std::string effort;                   ///< of the run, as far as it is known
+    std::vector<std::string> joins = {};  ///< see topology::BuiltMesh
+    std::size_t num_printed = 0;          ///< of the errors, the first
 };
 
 std::string count_of(std::size_t count, const std::string& noun) {
@@ -47,8 +48,10 @@ Findings check_mesh(const std::filesystem::path& path, const MeshInput& input) {
         auto found = topology::check(file.mesh, scenario::weld_advice());
         // Warnings about connections exist only after the mesh is built.
         if (found.errors.empty()) {
-            found.errors = scenario::distorted_cells(file.mesh);
-            found.warnings = topology::Mesh::build(file.mesh, scenario::weld_advice()).warnings;
+            found.errors = scenario::distorted_cells(file.mesh, found);
+            auto built = topology::Mesh::build(file.mesh, scenario::weld_advice());
+            found.warnings = std::move(built.warnings);
+            findings.joins = std::move(built.joins);
         }
         for (const auto& warning : found.warnings) findings.warnings.push_back(prefix + warning);
         for (const auto& error : found.errors) findings.errors.push_back(prefix + error);
@@ -87,7 +90,9 @@ Findings check_scenario(const std::filesystem::path& path) {
     const std::size_t num_printed = errors.size();
     Findings findings;
     findings.errors = std::move(errors);
-    const auto effort = add_body_findings(scenario, findings.errors, findings.warnings);
+    auto body = add_body_findings(scenario, findings.errors, findings.warnings);
+    const auto& effort = body.effort;
+    findings.joins = std::move(body.joins);
     findings.num_printed = num_printed;
     const auto num_obstacles = static_cast<std::size_t>(
         std::ranges::count_if(scenario.tools, [](const auto& tool) { return tool.is_obstacle; }));
@@ -150,6 +155,7 @@ int print(const std::filesystem::path& file, const Findings& findings) {
         print_error(findings.errors[i]);
     if (findings.errors.empty()) {
         std::cout << file.string() << ": OK, " << findings.summary << std::endl;
+        for (const auto& line : findings.joins) std::cout << file.string() << ": " << line << '\n';
         if (!findings.effort.empty()) std::cerr << file.string() << ": " << findings.effort << '\n';
         return done;
     }

@@ -32,7 +32,7 @@ struct MeshInfo {
     /// By kind, the cells as they were before any cut of which polyhedra are parts.
     std::array<std::size_t, topology::num_cell_kinds> cut_cells{};
     std::optional<cutting::FragmentCounts> fragments;  ///< of a body that was cut
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings, joins;
 
     double min_dihedral_degrees() const {
         return metrics.min_dihedral_angle * 180.0 / std::numbers::pi;
@@ -63,6 +63,7 @@ MeshInfo look_at(const InfoOptions& options) {
     try {
         const auto built = topology::Mesh::build(file.mesh, scenario::weld_advice());
         info.warnings.insert(info.warnings.end(), built.warnings.begin(), built.warnings.end());
+        info.joins = built.joins;
         info.num_components = topology::components(built.mesh).count;
         info.metrics = topology::measure(file.mesh);
         info.cut_cells = cut_cells_of(file.mesh);
@@ -85,6 +86,7 @@ nlohmann::ordered_json as_json(const MeshInfo& info) {
         for (std::size_t kind = 0; kind < info.cut_cells.size(); ++kind)
             json["polyhedra_are_parts_of"][keys[kind]] = info.cut_cells[kind];
     json["components"] = info.num_components;
+    if (!info.joins.empty()) json["joins"] = info.joins;
     json["volume"] = m.volume;
     json["surface_area"] = m.surface_area;
     json["bounding_box"] = {{"min", {m.box_min.x(), m.box_min.y(), m.box_min.z()}},
@@ -127,6 +129,7 @@ void print_text(const MeshInfo& info) {
                 kind == polyhedron ? (", parts of " + list_of(info.cut_cells)).c_str() : "");
     for (const auto& [region, cells] : m.cells_of_region)
         std::printf("region %-9d %zu %s\n", region, cells, cells == 1 ? "cell" : "cells");
+    for (const std::string& line : info.joins) std::printf("%s\n", line.c_str());
     std::printf("components       %d\n", info.num_components);
     std::printf("bounding box     %.6g %.6g %.6g to %.6g %.6g %.6g\n", m.box_min.x(), m.box_min.y(),
                 m.box_min.z(), m.box_max.x(), m.box_max.y(), m.box_max.z());

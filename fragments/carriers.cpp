@@ -12,11 +12,11 @@ using topology::Mesh;
 namespace {
 
 bool is_whole(const Mesh& mesh, const FragmentMesh& fragments, CellId e) {
-    return !mesh.is_polyhedron(e) &&
-           std::ranges::equal(
-               mesh.corners(e), fragments.origins_of(fragments.carrier_of_cell(e)), {},
-               [&](VertexId n) { return mesh.rest_position(n); },
-               [&](NodeId n) { return fragments.rest_position(n); });
+    const auto cell = topology::cell_of_source(mesh, e);
+    return cell && std::ranges::equal(
+                       cell->corners(), fragments.origins_of(fragments.carrier_of_cell(e)), {},
+                       [&](VertexId n) { return mesh.rest_position(n); },
+                       [&](NodeId n) { return fragments.rest_position(n); });
 }
 
 }  // namespace
@@ -34,7 +34,8 @@ Carriers carriers_of(const Mesh& mesh, const FragmentMesh& fragments) {
             std::vector<Vec3> corners;
             for (const NodeId n : fragments.origins_of(carrier))
                 corners.push_back(fragments.rest_position(n));
-            carriers.corners.emplace_back(fragments.kind_of(carrier), corners);
+            carriers.corners.emplace_back(fragments.kind_of(carrier), corners).diagonals =
+                fragments.diagonals_of(carrier);
         }
         carriers.of_cell.back() = row;
     }

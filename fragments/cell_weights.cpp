@@ -69,6 +69,26 @@ std::vector<std::size_t> ordered(std::span<const int> face, std::span<const Vec3
     return all;
 }
 
+/// Returns the half of a quadrilateral nearest to a point.
+std::array<int, 3> half_at(std::span<const Vec3> corners, std::span<const int> face, int first_end,
+                           const Vec3& x) {
+    std::array<int, 3> best{};
+    double highest = -std::numeric_limits<double>::infinity();
+    for (const int first : {first_end, first_end + 2}) {
+        std::array<int, 3> half{};
+        std::array<Vec3, 3> at;
+        for (std::size_t k = 0; k < 3; ++k) {
+            half[k] = face[(static_cast<std::size_t>(first) + k) % 4];
+            at[k] = corners[static_cast<std::size_t>(half[k])];
+        }
+        const double least = std::ranges::min(barycentric_in_triangle(at, x));
+        if (least <= highest) continue;
+        highest = least;
+        best = half;
+    }
+    return best;
+}
+
 /// Returns the weights for a point on a face of a cell.
 Weights weights_on_face(std::span<const Vec3> corners, std::span<const int> face, const Vec3& x) {
     const std::vector<std::size_t> at = ordered(face, corners);
@@ -104,11 +124,11 @@ Weights weights_on_face(std::span<const Vec3> corners, std::span<const int> face
 }
 
 template <class Division>
-Weights weights_in(std::span<const Vec3> corners, const Vec3& x) {
+Weights weights_in(std::span<const Vec3> corners, const Vec3& x, Diagonals diagonals) {
     static constexpr auto parts = Division::parts();
     typename Division::Corners of_cell;
     std::ranges::copy(corners, of_cell.begin());
-    const auto at = Division::points(of_cell);
+    const auto at = Division::points(of_cell, diagonals);
     std::size_t best = 0;
     std::array<double, 4> of_best{};
     double highest = -std::numeric_limits<double>::infinity();
@@ -121,20 +141,27 @@ Weights weights_in(std::span<const Vec3> corners, const Vec3& x) {
         best = t;
         of_best = b;
     }
-    if (std::abs(of_best[0]) < nearness)
-        return weights_on_face(corners, Division::traits.face(Division::face_of_part(best)), x);
+    if (std::abs(of_best[0]) < nearness) {
+        const int f = Division::face_of_part(best);
+        const auto face = Division::traits.face(f);
+        return diagonals.divides(f)
+                   ? weights_on_face(corners, half_at(corners, face, diagonals.first_end(f), x), x)
+                   : weights_on_face(corners, face, x);
+    }
     std::array<double, Division::num_points> of_points{};
     for (std::size_t k = 0; k < 4; ++k) of_points[parts[best][k]] = of_best[k];
     Weights weights{};
-    std::ranges::copy(Division::gathered(of_points), weights.begin());
+    std::ranges::copy(Division::gathered(of_points, diagonals), weights.begin());
     return weights;
 }
 
 }  // namespace
 
-Weights weights_in_cell(CellKind kind, std::span<const Vec3> corners, const Vec3& x) {
-    return with_division(
-        kind, [&]<class Division>(Division) { return weights_in<Division>(corners, x); });
+Weights weights_in_cell(CellKind kind, std::span<const Vec3> corners, const Vec3& x,
+                        Diagonals diagonals) {
+    return with_division(kind, [&]<class Division>(Division) {
+        return weights_in<Division>(corners, x, diagonals);
+    });
 }
 
 }  // namespace incise::fragments

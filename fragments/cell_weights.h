@@ -8,6 +8,7 @@
 
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
+#include "incise/topology/diagonals.h"
 
 namespace incise::fragments {
 
@@ -18,13 +19,15 @@ namespace incise::fragments {
 ///
 /// On a face of the cell, within rounding, the weights are those of the corners of this face. They
 /// depend on the positions of these corners only, and are the same bits in all cells with the face.
-/// On an edge they are those of its two ends.
+/// On an edge they are those of its two ends. A face that a diagonal divides is two faces here, and
+/// the diagonal is an edge.
 /// @param kind     hexahedron, wedge or pyramid
 /// @param corners  at rest, in the order of cell_kind.h, m
 /// @param x        at rest, m
 /// Cost: some microseconds.
 std::array<double, topology::max_corners> weights_in_cell(topology::CellKind kind,
                                                           std::span<const Vec3> corners,
-                                                          const Vec3& x);
+                                                          const Vec3& x,
+                                                          topology::Diagonals diagonals = {});
 
 }  // namespace incise::fragments

@@ -8,12 +8,29 @@
 
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
+#include "incise/topology/diagonals.h"
 
 namespace incise::fragments {
 
+using topology::Diagonals;
+
+/// The weights of the corners of a quadrilateral in its centre: one for the corners at the
+/// positions 0 and 2, and one for those at 1 and 3.
+struct QuadWeights {
+    double even = 0.25, odd = 0.25;
+};
+/// Returns the weights of a face. The centre is the mean of the four corners, or the middle of the
+/// diagonal that divides the face.
+constexpr QuadWeights quad_weights(Diagonals diagonals, int face) {
+    const int first = diagonals.first_end(face);
+    return first < 0 ? QuadWeights{} : first == 0 ? QuadWeights{0.5, 0.0} : QuadWeights{0.0, 0.5};
+}
+
 /// How a kind of cell is divided. Its centre is the mean of its corners. A face of four corners has
-/// a centre, too, the mean of these. Each edge of such a face makes a tetrahedron with both
-/// centres, and each face of three corners one with the centre of the cell.
+/// a centre, too: see quad_weights(). Each edge of such a face makes a tetrahedron with both
+/// centres, and each face of three corners one with the centre of the cell. If a diagonal divides a
+/// face of four corners, the tetrahedra on either side of it are one: the motion is linear in each
+/// of the two triangles, as in cells that have them as faces.
 template <topology::CellKind kind>
 struct CentreDivision {
     static constexpr topology::CellTraits traits = topology::traits(kind);
@@ -81,10 +98,11 @@ struct CentreDivision {
     using Corners = std::array<Vec3, num_corners>;
     using Points = std::array<Vec3, num_points>;
     /// Returns the values at all points of a field that is linear in those at the corners.
-    static Points points(const Corners& x);
+    static Points points(const Corners& x, Diagonals diagonals = {});
     /// Returns the sums at the corners of what acts at the points, each with its weight.
-    static Corners gathered(const Points& f);
-    static std::array<double, num_corners> gathered(const std::array<double, num_points>& f);
+    static Corners gathered(const Points& f, Diagonals diagonals = {});
+    static std::array<double, num_corners> gathered(const std::array<double, num_points>& f,
+                                                    Diagonals diagonals = {});
 
   private:
     /// Returns the neighbour of corner `c` that follows the neighbour `n`, anticlockwise; the first

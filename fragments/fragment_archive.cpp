@@ -19,9 +19,10 @@ using topology::traits;
 class FragmentArchive {
   public:
     static void list(auto& ar, auto& f) {
-        ar(f.light_share_, f.num_origins_, f.kinds_, f.regions_, f.origins_of_carrier_, f.carriers_,
-           f.is_alive_, f.shares_, f.corners_, f.origins_, f.rest_positions_, f.is_node_alive_,
-           f.carrier_of_cell_, f.fragment_of_cell_, f.carried_around_, f.is_constrained_);
+        ar(f.light_share_, f.num_origins_, f.kinds_, f.diagonals_, f.regions_,
+           f.origins_of_carrier_, f.carriers_, f.is_alive_, f.shares_, f.corners_, f.origins_,
+           f.rest_positions_, f.is_node_alive_, f.carrier_of_cell_, f.fragment_of_cell_,
+           f.carried_around_, f.is_constrained_);
     }
 
     static FragmentMesh load(const Mesh& material, ArchiveReader& ar) {
@@ -52,6 +53,7 @@ class FragmentArchive {
         const std::size_t num_carriers = f.kinds_.size(), num_fragments = f.carriers_.size(),
                           num_nodes = f.origins_.size();
         require(f.num_origins_ <= num_nodes && f.regions_.size() == num_carriers &&
+                    (f.diagonals_.empty() || f.diagonals_.size() == num_carriers) &&
                     num_fragments >= num_carriers && f.is_alive_.size() == num_fragments &&
                     f.shares_.size() == num_fragments && f.rest_positions_.size() == num_nodes &&
                     f.is_node_alive_.size() == num_nodes &&
@@ -74,7 +76,7 @@ class FragmentArchive {
             std::ranges::all_of(
                 f.kinds_,
                 [](CellKind kind) { return static_cast<std::size_t>(kind) < num_cell_kinds; }) &&
-                std::ranges::all_of(f.carriers_, is_carrier) &&
+                have_diagonals() && std::ranges::all_of(f.carriers_, is_carrier) &&
                 std::ranges::all_of(f.carrier_of_cell_, is_carrier) &&
                 std::ranges::all_of(f.fragment_of_cell_, is_fragment) &&
                 std::ranges::all_of(f.carried_around_, is_cell) &&
@@ -83,6 +85,13 @@ class FragmentArchive {
                 std::ranges::all_of(f.origins_, is_origin) &&
                 std::ranges::all_of(f.rest_positions_, [](const Vec3& x) { return x.allFinite(); }),
             "an element or a node that they name is not there");
+    }
+
+    /// True if all diagonals are those of quadrilaterals.
+    bool have_diagonals() const {
+        for (std::size_t c = 0; c < fragments_.diagonals_.size(); ++c)
+            if (!fragments_.diagonals_[c].fits(fragments_.kinds_[c])) return false;
+        return true;
     }
 
     void restore_rows() {

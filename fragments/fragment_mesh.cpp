@@ -44,6 +44,13 @@ std::vector<NodeId> lowest_at_same_position(std::span<const Vec3> rest_positions
     return lowest;
 }
 
+/// Returns the volume of a cell with plane triangles where diagonals divide its faces, m3.
+double volume_of_cell(CellKind kind, std::span<const Vec3> x, topology::Diagonals diagonals) {
+    if (diagonals.is_none()) return signed_volume(kind, x);
+    const PartNumbers volumes = part_volumes(kind, x, diagonals);
+    return std::accumulate(volumes.begin(), volumes.end(), 0.0);
+}
+
 }  // namespace
 
 FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<const VertexId> held)
@@ -59,10 +66,16 @@ FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<c
     for (std::size_t i = 0; i < material.element_capacity(); ++i) {
         const CellId cell(i);
         CarrierId carrier(i);
-        CellKind kind = material.kind(cell);
         std::vector<NodeId> corners;
-        for (const VertexId v : material.corners(cell))
+        // Of a polyhedron, the carrier is the cell before its faces were divided.
+        const auto whole = material.is_polyhedron(cell) ? material.whole_cell(cell) : std::nullopt;
+        CellKind kind = whole ? whole->kind : material.kind(cell);
+        for (const VertexId v : whole ? whole->corners() : material.corners(cell))
             corners.push_back(with_number_of<NodeId>(v));
+        if (whole) {
+            diagonals_.resize(material.element_capacity());
+            diagonals_[i] = whole->diagonals;
+        }
         if (i < source.of_cell.size() && source.of_cell[i] != Carriers::whole) {
             const auto row = static_cast<std::size_t>(source.of_cell[i]);
             if (!carrier_of_row[row].is_valid()) carrier_of_row[row] = carrier;
@@ -73,6 +86,10 @@ FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<c
                                            .subspan(first_corner[row], source.corners[row].size());
                 corners.assign(of_source.begin(), of_source.end());
                 kind = source.corners[row].kind();
+                if (!source.corners[row].diagonals.is_none()) {
+                    diagonals_.resize(material.element_capacity());
+                    diagonals_[i] = source.corners[row].diagonals;
+                }
             }
             if (material.is_alive(cell)) cells_of_carrier_[carrier].push_back(cell);
         }
@@ -137,7 +154,7 @@ void FragmentMesh::complete() {
             x.push_back(rest_position(n));
             if (!was_never_alive(CarrierId(i))) ++end[n.index() + 1];
         }
-        volumes_.push_back(signed_volume(kinds_[i], x));
+        volumes_.push_back(volume_of_cell(kinds_[i], x, diagonals_of(CarrierId(i))));
     }
     for (std::size_t i = 0; i < num_origins_; ++i) end[i + 1] += end[i];
     carrier_begin_ = end;
@@ -262,6 +279,7 @@ FragmentMesh::PartSharesUpdate FragmentMesh::update_part_shares(const Mesh& mate
     PartSharesUpdate update;
     const CellKind kind = kinds_[carrier.index()];
     if (kind == CellKind::tetrahedron) return update;
+    const topology::Diagonals diagonals = diagonals_of(carrier);
     std::array<Vec3, max_corners> x;
     const auto origins = origins_of(carrier);
     for (std::size_t k = 0; k < origins.size(); ++k) x[k] = rest_position(origins[k]);
@@ -287,7 +305,7 @@ FragmentMesh::PartSharesUpdate FragmentMesh::update_part_shares(const Mesh& mate
     std::vector<double> volumes;  // by part, m3
     std::vector<std::vector<double>> fractions, divided;
     for (const auto& cells : parts) {
-        fractions.push_back(filled_fractions(kind, at_rest, material, cells));
+        fractions.push_back(filled_fractions(kind, at_rest, material, cells, diagonals));
         double sum = 0.0;
         for (const CellId cell : cells) sum += topology::rest_volume(material, cell);
         filled += sum;
@@ -296,7 +314,7 @@ FragmentMesh::PartSharesUpdate FragmentMesh::update_part_shares(const Mesh& mate
             fractions.back().assign(num_parts(kind), sum / whole);
         volumes.push_back(sum);
     }
-    const PartNumbers part_sizes = part_volumes(kind, at_rest);
+    const PartNumbers part_sizes = part_volumes(kind, at_rest, diagonals);
     const auto volume_of = [&](std::span<const double> of_part) {
         return std::inner_product(of_part.begin(), of_part.end(), part_sizes.begin(), 0.0);
     };
@@ -440,7 +458,8 @@ std::array<double, max_corners> FragmentMesh::weights_in_carrier(CarrierId carri
     if (const CellKind kind = kinds_[carrier.index()]; kind != CellKind::tetrahedron) {
         std::array<Vec3, max_corners> corners;
         for (std::size_t k = 0; k < nodes.size(); ++k) corners[k] = rest_position(nodes[k]);
-        return weights_in_cell(kind, std::span(corners).first(nodes.size()), x);
+        return weights_in_cell(kind, std::span(corners).first(nodes.size()), x,
+                               diagonals_of(carrier));
     }
     Eigen::Matrix3d edges;
     for (int k = 0; k < 3; ++k)

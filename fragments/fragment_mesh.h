@@ -84,6 +84,8 @@ class FragmentMesh {
 
     topology::CellKind kind(ElementId e) const { return kinds_[carriers_[e.index()].index()]; }
     int region(ElementId e) const { return regions_[carriers_[e.index()].index()]; }
+    /// Returns the diagonals that divide quadrilaterals of the carrier, since they meet triangles.
+    topology::Diagonals diagonals(ElementId e) const { return diagonals_of(carriers_[e.index()]); }
     /// Returns the corners in the order of cell_kind.h. A dead fragment keeps its last corners.
     std::span<const NodeId> corners(ElementId e) const {
         return {corners_.data() + corner_begin_[e.index()],
@@ -133,6 +135,9 @@ class FragmentMesh {
     /// of the source has the id of its lowest cell.
     CarrierId carrier(ElementId e) const { return carriers_[e.index()]; }
     /// Returns the kind of a carrier.
+    topology::Diagonals diagonals_of(CarrierId carrier) const {
+        return diagonals_.empty() ? topology::Diagonals() : diagonals_[carrier.index()];
+    }
     topology::CellKind kind_of(CarrierId carrier) const { return kinds_[carrier.index()]; }
     /// Returns the carrier of a cell of the material.
     CarrierId carrier_of_cell(CellId cell) const { return carrier_of_cell_[cell.index()]; }
@@ -244,6 +249,7 @@ class FragmentMesh {
 
     // By carrier, that is by id of an element before any cut. These never change.
     std::vector<topology::CellKind> kinds_;
+    std::vector<topology::Diagonals> diagonals_;  // empty if there are none
     std::vector<int> regions_;
     std::vector<double> volumes_;  // at rest, m3
     std::vector<std::size_t> origin_begin_{0};

@@ -61,14 +61,16 @@ double volume_of(std::span<const double> fractions, const PartNumbers& volumes) 
 }  // namespace
 
 std::vector<double> filled_fractions(CellKind kind, std::span<const Vec3> corners,
-                                     const Mesh& material, std::span<const CellId> cells) {
-    const PartNumbers volumes = part_volumes(kind, corners);
+                                     const Mesh& material, std::span<const CellId> cells,
+                                     topology::Diagonals diagonals) {
+    const PartNumbers volumes = part_volumes(kind, corners, diagonals);
     const double whole = std::accumulate(volumes.begin(), volumes.end(), 0.0);
     double filled = 0.0;
     for (const CellId cell : cells) filled += rest_volume(material, cell);
     constexpr double rounding = 1e-10;  // as FragmentParts::share_of
     if (std::abs(filled - whole) <= rounding * whole) return {};
-    const PartNumbers fractions = part_fractions(kind, corners, boundary(material, cells));
+    const PartNumbers fractions =
+        part_fractions(kind, corners, boundary(material, cells), diagonals);
     constexpr double nothing = 1e-12;  // of the carrier
     if (volume_of(fractions, volumes) <= nothing * whole) return {};
     return {fractions.begin(), fractions.begin() + static_cast<std::ptrdiff_t>(num_parts(kind))};

@@ -8,6 +8,7 @@
 
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
+#include "incise/topology/diagonals.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::fragments {
@@ -19,8 +20,10 @@ namespace incise::fragments {
 /// @param kind     of the carrier: hexahedron, wedge or pyramid
 /// @param corners  of the carrier at rest, in the order of cell_kind.h, m
 /// @param cells    inside the carrier, in ascending order
+/// @param diagonals  that divide faces of the carrier
 std::vector<double> filled_fractions(topology::CellKind kind, std::span<const Vec3> corners,
-                                     const topology::Mesh& material, std::span<const CellId> cells);
+                                     const topology::Mesh& material, std::span<const CellId> cells,
+                                     topology::Diagonals diagonals = {});
 
 /// Makes the fractions of parts that fill a carrier together add up to given sums, by tetrahedron.
 /// Those of parts that lie beside each other do so within rounding. A cut with bends that are

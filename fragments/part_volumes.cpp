@@ -105,16 +105,16 @@ double six_volumes_in_unit(const Triangle& triangle) {
 }
 
 template <class Division>
-typename Division::Points points_of(std::span<const Vec3> corners) {
+typename Division::Points points_of(std::span<const Vec3> corners, Diagonals diagonals) {
     typename Division::Corners of_cell;
     assert(corners.size() == of_cell.size());
     std::ranges::copy(corners, of_cell.begin());
-    return Division::points(of_cell);
+    return Division::points(of_cell, diagonals);
 }
 
 template <class Division>
-PartNumbers volumes_of_parts(std::span<const Vec3> corners) {
-    const auto at = points_of<Division>(corners);
+PartNumbers volumes_of_parts(std::span<const Vec3> corners, Diagonals diagonals) {
+    const auto at = points_of<Division>(corners, diagonals);
     PartNumbers volumes{};
     std::size_t t = 0;
     for (const auto& p : Division::parts())
@@ -128,9 +128,9 @@ PartNumbers volumes_of_parts(std::span<const Vec3> corners) {
 // coordinates it is that of the unit vectors.
 template <class Division>
 PartNumbers fractions_in_parts(std::span<const Vec3> corners,
-                               std::span<const std::array<Vec3, 3>> surface) {
+                               std::span<const std::array<Vec3, 3>> surface, Diagonals diagonals) {
     static constexpr auto parts = Division::parts();
-    const auto at = points_of<Division>(corners);
+    const auto at = points_of<Division>(corners, diagonals);
     std::vector<Triangle> from_centre(surface.begin(), surface.end());
     for (Triangle& triangle : from_centre)
         for (Vec3& x : triangle) x -= at.back();
@@ -158,15 +158,16 @@ std::size_t num_parts(CellKind kind) {
     return with_division(kind, []<class Division>(Division) { return Division::num_parts; });
 }
 
-PartNumbers part_volumes(CellKind kind, std::span<const Vec3> corners) {
-    return with_division(
-        kind, [&]<class Division>(Division) { return volumes_of_parts<Division>(corners); });
+PartNumbers part_volumes(CellKind kind, std::span<const Vec3> corners, Diagonals diagonals) {
+    return with_division(kind, [&]<class Division>(Division) {
+        return volumes_of_parts<Division>(corners, diagonals);
+    });
 }
 
 PartNumbers part_fractions(CellKind kind, std::span<const Vec3> corners,
-                           std::span<const std::array<Vec3, 3>> surface) {
+                           std::span<const std::array<Vec3, 3>> surface, Diagonals diagonals) {
     return with_division(kind, [&]<class Division>(Division) {
-        return fractions_in_parts<Division>(corners, surface);
+        return fractions_in_parts<Division>(corners, surface, diagonals);
     });
 }
 

@@ -9,6 +9,7 @@
 
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
+#include "incise/topology/diagonals.h"
 
 namespace incise::fragments {
 
@@ -22,7 +23,8 @@ std::size_t num_parts(topology::CellKind kind);
 /// Returns the volumes of the tetrahedra of a cell, m3.
 /// @param kind     hexahedron, wedge or pyramid
 /// @param corners  in the order of cell_kind.h, m
-PartNumbers part_volumes(topology::CellKind kind, std::span<const Vec3> corners);
+PartNumbers part_volumes(topology::CellKind kind, std::span<const Vec3> corners,
+                         topology::Diagonals diagonals = {});
 
 /// Returns the volume of a polyhedron in each tetrahedron of a cell, over that of the tetrahedron.
 /// It is exact within rounding, and exactly 0 or 1 where it is so within rounding.
@@ -32,6 +34,7 @@ PartNumbers part_volumes(topology::CellKind kind, std::span<const Vec3> corners)
 ///                 polyhedron may be of any shape, and reach out of the cell.
 /// Cost: about a microsecond for each triangle.
 PartNumbers part_fractions(topology::CellKind kind, std::span<const Vec3> corners,
-                           std::span<const std::array<Vec3, 3>> surface);
+                           std::span<const std::array<Vec3, 3>> surface,
+                           topology::Diagonals diagonals = {});
 
 }  // namespace incise::fragments

@@ -96,7 +96,7 @@ class FragmentCheck {
         if (shares.empty()) return;
         std::vector<Vec3> x;
         for (const NodeId n : fragments_.corners(e)) x.push_back(fragments_.rest_position(n));
-        const PartNumbers volumes = part_volumes(fragments_.kind(e), x);
+        const PartNumbers volumes = part_volumes(fragments_.kind(e), x, fragments_.diagonals(e));
         double volume = 0.0;
         bool are_positive = true;
         for (std::size_t t = 0; t < shares.size(); ++t) {

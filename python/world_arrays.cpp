@@ -128,6 +128,16 @@ py::array_t<std::int64_t> node_ids(const World& world) {
     return array;
 }
 
+namespace {
+
+/// Returns the kind of a cell in arrays: a cell that is as the source has it has its kind there.
+topology::CellKind kind_in_arrays(const topology::Mesh& mesh, CellId e) {
+    const auto whole = mesh.whole_cell(e);
+    return whole ? whole->kind : topology::CellKind::polyhedron;
+}
+
+}  // namespace
+
 py::object cells(const World& world) {
     driver_of(world);
     return kept(world, world->cells, [&] {
@@ -135,9 +145,9 @@ py::object cells(const World& world) {
         const topology::Mesh& mesh = world->driver.world().mesh();
         CellArrays arrays(true);
         for (const CellId e : mesh.elements()) {
-            auto& values = arrays.of(mesh.kind(e));
-            if (!mesh.is_polyhedron(e)) {
-                for (const VertexId n : mesh.corners(e)) values.push_back(rows.row(n));
+            auto& values = arrays.of(kind_in_arrays(mesh, e));
+            if (const auto whole = mesh.whole_cell(e)) {
+                for (const VertexId n : whole->corners()) values.push_back(rows.row(n));
                 continue;
             }
             values.push_back(mesh.num_faces(e));
@@ -156,7 +166,8 @@ py::object regions(const World& world) {
     return kept(world, world->regions, [&] {
         const topology::Mesh& mesh = world->driver.world().mesh();
         CellArrays arrays(false);
-        for (const CellId e : mesh.elements()) arrays.of(mesh.kind(e)).push_back(mesh.region(e));
+        for (const CellId e : mesh.elements())
+            arrays.of(kind_in_arrays(mesh, e)).push_back(mesh.region(e));
         return arrays.object(true);
     });
 }
@@ -207,7 +218,8 @@ py::object results(const World& world, std::vector<py::ssize_t> shape,
     CellRows<double> rows(false, std::move(shape));
     const std::vector<physics::ElementResult> all = body.cell_results();
     auto result = all.begin();
-    for (const CellId e : body.mesh().elements()) append(*result++, rows.of(body.mesh().kind(e)));
+    for (const CellId e : body.mesh().elements())
+        append(*result++, rows.of(kind_in_arrays(body.mesh(), e)));
     return rows.object(false);
 }
 
@@ -253,7 +265,8 @@ py::object physics(const World& world) {
     const topology::Mesh& material = world->driver.world().mesh();
     auto row = arrays.cell_of_element.begin();
     for (const CellId e : material.elements())
-        fragments.of(material.kind(e)).push_back(number[static_cast<std::size_t>(*row++)]);
+        fragments.of(kind_in_arrays(material, e))
+            .push_back(number[static_cast<std::size_t>(*row++)]);
     made.cells = cells.object(true);
     made.volume_shares = shares.object(true);
     made.fragments = fragments.object(true);

@@ -398,7 +398,8 @@ Body build_body(const Scenario& scenario) {
 BodyFindings check_body(const Scenario& scenario) {
     Parts parts = build_parts(scenario);
     check_model(scenario, parts);
-    return {parts.problems.lines(), std::move(parts.warnings), parts.effort};
+    return {parts.problems.lines(), std::move(parts.warnings), parts.effort,
+            parts.source ? std::move(parts.source->joins) : std::vector<std::string>()};
 }
 
 }  // namespace incise::scenario

@@ -64,6 +64,7 @@ struct BodyFindings {
         double seconds_of_forces;  ///< of all of them, on one core of this machine
     };
     std::optional<Effort> effort;
+    std::vector<std::string> joins;  ///< see topology::BuiltMesh
 };
 
 /// Returns what build_body(), make_model() and step_limit() refuse and warn of. If the scenario has

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "incise/topology/mesh_check.h"
 #include "incise/topology/mesh_data.h"
 
 namespace incise::scenario {
@@ -13,7 +14,8 @@ namespace incise::scenario {
 /// elements of the method heml, and one that counts the others: see
 /// physics::VirtualCentreKernel::why_no_cell(). The other methods take no such cells either.
 /// Cost: O(#cells).
-/// @pre  topology::check() finds no errors
-std::vector<std::string> distorted_cells(const topology::MeshData& mesh);
+/// @param checked  the result of topology::check(), without errors
+std::vector<std::string> distorted_cells(const topology::MeshData& mesh,
+                                         const topology::MeshCheck& checked);
 
 }  // namespace incise::scenario

@@ -120,7 +120,8 @@ SourceMesh build_mesh(const MeshSpec& spec, const std::vector<MaterialSpec>& mat
         for (std::string& warning : file.warnings) warning.insert(0, prefix);
         return {std::move(built.mesh),
                 std::move(file.warnings),
-                {path ? path->string() : "", std::move(file.cell_vectors)}};
+                {path ? path->string() : "", std::move(file.cell_vectors)},
+                std::move(built.joins)};
     } catch (const InputError& error) {
         if (spec.scale != 1.0 && topology::check(load_mesh(spec, {}, 1.0).mesh).errors.empty())
             throw BodyError(spec.scale_location,

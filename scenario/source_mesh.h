@@ -22,6 +22,7 @@ struct SourceMesh {
     topology::Mesh mesh;
     std::vector<std::string> warnings;
     CellVectors cell_vectors;
+    std::vector<std::string> joins;  ///< see topology::BuiltMesh
 };
 
 /// Reads or generates the mesh of a scenario, and reads the cell arrays that the materials name.

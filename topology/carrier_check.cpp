@@ -88,6 +88,14 @@ class CarrierCheck {
         const CellTraits& t = traits(x.kind());
         for (int f = 0; f < t.num_faces; ++f) {
             const auto face = t.face(f);
+            // Between its halves and the same about the mean of its corners is half a tetrahedron.
+            if (const int first = x.diagonals.first_end(f); first >= 0) {
+                const auto at = [&](int p) {
+                    return x[static_cast<std::size_t>(
+                        face[static_cast<std::size_t>((first + p) % 4)])];
+                };
+                shape.volume -= 0.5 * tetrahedron_volume(at(0), at(1), at(2), at(3));
+            }
             Shape::Extent& extent = shape.extents.emplace_back();
             extent.outwards = area_vector(static_cast<int>(face.size()), [&](int p) {
                 return x[static_cast<std::size_t>(face[static_cast<std::size_t>(p)])];

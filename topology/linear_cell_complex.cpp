@@ -89,6 +89,12 @@ class ComplexMaker {
         info.id = e;
         info.region = mesh_.region(e);
         info.first_edge = {mesh_.face_corner({e, 0}, 0), mesh_.face_corner({e, 0}, 1)};
+        if (const auto whole = mesh_.whole_cell(e)) {
+            info.diagonals = whole->diagonals;
+            const auto face = traits(whole->kind).face(0);
+            for (std::size_t p = 0; p < 2; ++p)
+                info.first_edge[p] = whole->at[static_cast<std::size_t>(face[p])];
+        }
         if (!carriers_.is_empty())
             if (const std::int64_t row = carriers_.of_cell[num_cells_]; row != Carriers::whole)
                 info.carrier = carriers_.corners[static_cast<std::size_t>(row)];
@@ -148,7 +154,10 @@ class ComplexReader {
         for (const Cell& cell : cells_) add(cell);
         for (std::size_t c = 0; c < cells_.size(); ++c) read_faces(c);
         data_.points_may_coincide = true;  // a cut leaves two vertices at one position
-        return import_mesh(data_, {.shared_faces = std::move(shared_), .keeps_order = true});
+        return import_mesh(data_, {.shared_faces = std::move(shared_),
+                                   .diagonals = std::move(diagonals_),
+                                   .joined_triangles = std::move(joined_triangles_),
+                                   .keeps_order = true});
     }
 
   private:
@@ -202,6 +211,17 @@ class ComplexReader {
         return numbers_.at(v);
     }
 
+    /// Returns the dart that follows in a face before it was divided; null if there is none.
+    ConstHandle next_of_whole(const Cell& cell, DartPlace at, ConstHandle d) const {
+        const ConstHandle next = complex_.beta<1>(d);
+        const int first = cell.info.diagonals.first_end(at.face);
+        if (first < 0 || (at.position + 1 - first) % 2 != 0) return next;
+        const ConstHandle other_half = complex_.beta<2>(next);
+        return complex_.is_free<2>(next) || complex_.is_free<1>(other_half)
+                   ? ConstHandle(nullptr)
+                   : complex_.beta<1>(other_half);
+    }
+
     /// Gives the corners of a cell their places, with `first` as the first dart of the first face.
     /// Returns false if the cell is of another kind.
     bool place_corners(Cell& cell, ConstHandle first) const {
@@ -221,7 +241,9 @@ class ComplexReader {
             open.pop_back();
             const int size = static_cast<int>(t.face(place.face).size());
             if (complex_.is_free<1>(d) || complex_.is_free<2>(d)) return false;
-            reach(place.face, (place.position + 1) % size, complex_.beta<1>(d));
+            const ConstHandle next = next_of_whole(cell, place, d);
+            if (next == nullptr) return false;
+            reach(place.face, (place.position + 1) % size, next);
             const DartPlace other = at(opposite_places[static_cast<std::size_t>(cell.kind)],
                                        place.face, place.position);
             reach(other.face, other.position, complex_.beta<2>(d));
@@ -250,7 +272,11 @@ class ComplexReader {
         std::stable_partition(cell.darts.begin(), cell.darts.end(), is_first);
         for (int k = 0; k < num_cell_kinds; ++k) {
             cell.kind = static_cast<CellKind>(k);
-            if (std::ssize(cell.darts) != traits(cell.kind).num_face_corners()) continue;
+            const Diagonals diagonals = cell.info.diagonals;
+            if (!diagonals.fits(cell.kind) ||
+                std::ssize(cell.darts) !=
+                    traits(cell.kind).num_face_corners() + 2 * diagonals.count())
+                continue;
             for (const ConstHandle d : cell.darts)
                 if (place_corners(cell, d)) {
                     orient(cell);
@@ -273,6 +299,23 @@ class ComplexReader {
         const auto before = cell.corners;
         for (std::size_t k = 0; k < before.size(); ++k)
             cell.corners[k] = before[static_cast<std::size_t>(traits(cell.kind).mirrored[k])];
+        // A diagonal keeps its ends, on a face that may have another number.
+        const CellTraits& t = traits(cell.kind);
+        const auto ends = [&](const std::vector<std::int64_t>& corners, int f, int first) {
+            const auto at = [&](int p) {
+                return corners[static_cast<std::size_t>(t.face(f)[static_cast<std::size_t>(p)])];
+            };
+            return std::pair(std::min(at(first), at(first + 2)),
+                             std::max(at(first), at(first + 2)));
+        };
+        Diagonals turned;
+        for (int f = 0; f < t.num_faces; ++f)
+            for (int g = 0; g < t.num_faces && cell.info.diagonals.divides(f); ++g)
+                for (int p = 0; p < 2 && t.face(g).size() == 4; ++p)
+                    if (ends(cell.corners, g, p) ==
+                        ends(before, f, cell.info.diagonals.first_end(f)))
+                        turned.divide(g, p);
+        cell.info.diagonals = turned;
     }
 
     void add(const Cell& cell) {
@@ -298,10 +341,14 @@ class ComplexReader {
         const CellTraits& t = traits(cell.kind);
         for (int f = 0; f < t.num_faces; ++f) {
             const auto face = t.face(f);
-            if (face.size() == points.size() && std::ranges::all_of(face, [&](int k) {
-                    return std::ranges::find(points, cell.corners[static_cast<std::size_t>(k)]) !=
-                           points.end();
-                }))
+            const auto num_common = std::ranges::count_if(face, [&](int k) {
+                return std::ranges::find(points, cell.corners[static_cast<std::size_t>(k)]) !=
+                       points.end();
+            });
+            // Both have the same corners, or it is a half of the face.
+            if (num_common == std::ssize(points) &&
+                (face.size() == points.size() ||
+                 (cell.info.diagonals.divides(f) && points.size() == 3)))
                 return f;
         }
         throw InputError("linear cell complex: a face has other corners than its cell");
@@ -313,6 +360,12 @@ class ComplexReader {
         std::int32_t on_cuts = 0;
         for (const ConstHandle d : cell.darts) {
             const int f = face_of(cell, d);
+            if (cell.info.diagonals.divides(f)) {
+                if (complex_.is_free<3>(d) && complex_.attribute<2>(d) != nullptr &&
+                    complex_.info<2>(d).is_on_cut)
+                    on_cuts |= 1 << f;
+                continue;
+            }
             if (std::exchange(is_read[static_cast<std::size_t>(f)], true)) continue;
             if (complex_.is_free<3>(d)) {
                 if (complex_.attribute<2>(d) != nullptr && complex_.info<2>(d).is_on_cut)
@@ -322,9 +375,26 @@ class ComplexReader {
             const ConstHandle far = complex_.beta<3>(d);
             const std::size_t other = cell_of_.at(far);
             const SourceFace here{c, f}, there{other, face_of(cells_[other], far)};
-            if (here < there) shared_.push_back({here, there, shift_of(here, there)});
+            if (cells_[other].info.diagonals.divides(there.face))
+                join_triangle(there, here);
+            else if (here < there)
+                shared_.push_back({here, there, shift_of(here, there)});
         }
         data_.cut_faces.push_back(on_cuts);
+        diagonals_.push_back(cell.info.diagonals);
+    }
+
+    void join_triangle(SourceFace quad, SourceFace triangle) {
+        const Cell &of_quad = cells_[quad.cell], &of_triangle = cells_[triangle.cell];
+        for (const int k : traits(of_triangle.kind).face(triangle.face))
+            if (std::ranges::find(of_quad.corners,
+                                  of_triangle.corners[static_cast<std::size_t>(k)]) ==
+                of_quad.corners.end())
+                refuse_sewn_faces();
+        joined_triangles_.emplace_back(quad, triangle);
+    }
+    [[noreturn]] static void refuse_sewn_faces() {
+        throw InputError("linear cell complex: two faces that are sewn have other vertices");
     }
 
     /// Returns the position in a face of a cell of the point at position 0 of another face.
@@ -341,7 +411,7 @@ class ComplexReader {
                 fits = point(a, p) == point(b, (shift - p + size) % size);
             if (fits) return shift;
         }
-        throw InputError("linear cell complex: two faces that are sewn have other vertices");
+        refuse_sewn_faces();
     }
 
     const LinearCellComplex& complex_;
@@ -351,6 +421,8 @@ class ComplexReader {
     MeshData data_;
     std::map<std::vector<double>, std::int64_t> rows_;  // of carriers, by their corners
     std::vector<SharedFace> shared_;
+    std::vector<Diagonals> diagonals_;                                 // by cell
+    std::vector<std::pair<SourceFace, SourceFace>> joined_triangles_;  // see ImportRules
 };
 
 /// Reads numbers from an attribute in a file.
@@ -391,6 +463,7 @@ void write_cmap_attribute_node(boost::property_tree::ptree& node, const ComplexC
          << (cell.carrier ? 1 + static_cast<int>(cell.carrier->kind()) : 0);
     if (cell.carrier)
         for (const Vec3& x : *cell.carrier) text << ' ' << x[0] << ' ' << x[1] << ' ' << x[2];
+    if (!cell.diagonals.is_none()) text << ' ' << cell.diagonals.bits();
     node.add("v", text.str());
 }
 
@@ -418,6 +491,8 @@ void read_cmap_attribute_node(const boost::property_tree::ptree::value_type& nod
         for (Vec3& x : cell.carrier.emplace(static_cast<CellKind>(carrier - 1), zeros))
             is_read = is_read && read_numbers(text, x[0], x[1], x[2]);
     }
+    if (std::uint16_t bits = 0; is_read && read_numbers(text, bits))
+        cell.diagonals = Diagonals::of_bits(bits);
     if (!is_read) refuse_attribute(node.second.data());
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "incise/base/types.h"
+#include "incise/topology/diagonals.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_data.h"
 
@@ -41,6 +42,8 @@ struct ComplexCell {
     /// The cell that this one is a part of; none for a cell that is whole. Cells with the same
     /// corners here are parts of one carrier. See Carriers.
     std::optional<CarrierCorners> carrier = {};
+    /// Of a hexahedron, wedge or pyramid, the quadrilaterals that are two triangles here.
+    Diagonals diagonals = {};
     bool operator==(const ComplexCell&) const = default;
 };
 
@@ -75,7 +78,8 @@ LinearCellComplex to_linear_cell_complex(const Mesh& mesh, const Carriers& carri
 /// id come last, in the order of their attributes. Volumes without attribute have region 0.
 /// The mesh of to_linear_cell_complex() is the same mesh, but for ids of dead nodes and cells,
 /// labels and epoch.
-/// Throws InputError for a volume that is no tetrahedron, hexahedron, wedge or pyramid, for a dart
+/// Throws InputError for a volume that is no tetrahedron, hexahedron, wedge or pyramid, unless its
+/// attribute says that only quadrilaterals of such a cell are divided. Also for a dart
 /// without vertex attribute, and as Mesh::build() does. Cost: O(n log n).
 BuiltMesh from_linear_cell_complex(const LinearCellComplex& complex);
 

@@ -87,17 +87,9 @@ CellShape Mesh::shape(CellId e) const {
 }
 
 CellShape Mesh::shape_of_row(CellId e, CellKind kind) const {
-    CellShape shape;
-    std::array<VertexId, max_face_corners> face;
-    const CellTraits& t = traits(kind);
-    for (int f = 0; f < t.num_faces; ++f) {
-        const auto corners = t.face(f);
-        for (std::size_t p = 0; p < corners.size(); ++p)
-            face[p] = row(e)[static_cast<std::size_t>(corners[p])];
-        shape.add_face(std::span(face).first(corners.size()),
-                       (inside_faces_[e.index()] >> f & 1) != 0);
-    }
-    return shape;
+    WholeCell cell{kind, {}, {}};
+    std::ranges::copy(row(e), cell.at.begin());
+    return cell.shape(inside_faces_[e.index()]);
 }
 
 double Mesh::rest_volume_of_polyhedron(CellId e) const {
@@ -261,6 +253,20 @@ std::vector<FaceId> boundary_faces(const Mesh& mesh) {
     return faces;
 }
 
+namespace {}  // namespace
+
+std::optional<WholeCell> cell_of_source(const Mesh& mesh, CellId e) {
+    const auto whole = mesh.whole_cell(e);
+    if (!whole || whole->diagonals.is_none()) return whole;
+    const int num_faces = traits(whole->kind).num_faces;
+    int other = num_faces;  // the second half of the next quadrilateral
+    for (int f = 0; f < num_faces; ++f)
+        if (whole->diagonals.divides(f) &&
+            mesh.neighbor({e, f}).is_valid() != mesh.neighbor({e, other++}).is_valid())
+            return std::nullopt;
+    return whole;
+}
+
 MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions,
                       std::vector<VertexId>* nodes, std::vector<CellId>* elements) {
     MeshData data;
@@ -287,7 +293,8 @@ MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions,
         elements->reserve(mesh.num_elements());
     }
     for (const CellId e : mesh.elements()) {
-        if (mesh.is_polyhedron(e)) {
+        const auto whole = cell_of_source(mesh, e);
+        if (!whole) {
             data.faces.push_back(mesh.num_faces(e));
             for (int f = 0; f < mesh.num_faces(e); ++f) {
                 data.faces.push_back(mesh.face_size({e, f}));
@@ -295,12 +302,14 @@ MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions,
                     data.faces.push_back(row_of_node[mesh.face_corner({e, f}, p).index()]);
             }
         }
-        for (const VertexId n : mesh.corners(e)) data.corners.push_back(row_of_node[n.index()]);
-        data.kinds.push_back(mesh.kind(e));
+        for (const VertexId n : whole ? whole->corners() : mesh.corners(e))
+            data.corners.push_back(row_of_node[n.index()]);
+        data.kinds.push_back(whole ? whole->kind : mesh.kind(e));
         data.offsets.push_back(data.corners.size());
         data.regions.push_back(mesh.region(e));
         if (elements) elements->push_back(e);
-        for (int f = 0; f < mesh.num_faces(e); ++f)
+        const int num_faces = whole ? traits(whole->kind).num_faces : mesh.num_faces(e);
+        for (int f = 0; f < num_faces; ++f)
             if (mesh.is_on_cut({e, f})) data.set_on_cut(data.num_cells() - 1, f);
     }
     if (!data.cut_faces.empty()) data.cut_faces.resize(data.num_cells());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "incise/topology/id_map.h"
 #include "incise/topology/living_ids.h"
 #include "incise/topology/mesh_data.h"
+#include "incise/topology/whole_cell.h"
 
 namespace incise::topology {
 
@@ -36,7 +38,8 @@ class Mesh {
   public:
     /// Checks `data` (see mesh_check.h) and builds the mesh. Points that no element uses are left
     /// out. Pinched points, at which elements are not connected through faces, get several nodes.
-    /// There are warnings about both.
+    /// There are warnings about both. A quadrilateral that meets two triangles is divided by the
+    /// diagonal that they share, and joined to both: see find_joined_quads().
     /// Cells and used points of data with carriers keep their order. Ties between fragments, which
     /// ids decide, then come out as in the body that was written, and so does the next cut.
     /// Throws InputError with the errors of check(). Cost: O(n log n), some 0.5 us an element.
@@ -95,7 +98,7 @@ class Mesh {
     /// Returns the volume of a polyhedron at rest, m3: see rest_volume().
     double rest_volume_of_polyhedron(CellId e) const;
     /// True if the cell has a shape of its own, which edits have made, here or before the source
-    /// was written.
+    /// was written, or the division of its faces at import: see whole_cell().
     bool is_polyhedron(CellId e) const { return kinds_[e.index()] == CellKind::polyhedron; }
     /// Returns which corner of `e` the node is; -1 if it is none.
     int corner_of(CellId e, VertexId n) const;
@@ -124,6 +127,11 @@ class Mesh {
     /// Returns the faces that a cell of another kind has, or had before it became a polyhedron.
     /// @param kind  the kind
     CellShape shape_of_row(CellId e, CellKind kind) const;
+
+    /// Returns the cell as the source has it. A hexahedron, wedge or pyramid of which
+    /// quadrilaterals are divided, because they meet triangles, is a polyhedron in the mesh.
+    /// Nothing for a cell to which edits have given other faces.
+    std::optional<WholeCell> whole_cell(CellId e) const;
 
     /// True if the face lay inside the body before any cut: it is, or was, joined to another face.
     /// The parts of a face that is divided take its value. The source can name further faces:
@@ -180,7 +188,10 @@ class Mesh {
         std::vector<VertexId> corners;             // of the faces, each once
         std::vector<FaceId> neighbors;             // by face
         CellKind row_kind = CellKind::polyhedron;  // that of the cell before it became one
-        static void archive(auto& ar, auto& self) { ar(self.shape, self.neighbors, self.row_kind); }
+        Diagonals diagonals;  // that the cell had from the start: see whole_cell()
+        static void archive(auto& ar, auto& self) {
+            ar(self.shape, self.neighbors, self.row_kind, self.diagonals);
+        }
     };
     const Polyhedron& polyhedron(CellId e) const { return polyhedra_.at(e); }
     std::span<const VertexId> row(CellId e) const {
@@ -217,6 +228,7 @@ class Mesh {
 struct BuiltMesh {
     Mesh mesh;
     std::vector<std::string> warnings;
+    std::vector<std::string> joins;  ///< which quadrilaterals were joined: report_of_joins()
 };
 
 /// Appends the elements that are connected with `start` through faces at its node `n`, in ascending
@@ -246,8 +258,13 @@ Components components(const Mesh& mesh);
 /// Returns the faces of living elements that have no neighbour, in ascending order.
 std::vector<FaceId> boundary_faces(const Mesh& mesh);
 
+/// Returns a cell as a source can have it, which is then joined as it is here. Nothing for a
+/// polyhedron, also for one of which a quadrilateral is joined to one triangle only.
+std::optional<WholeCell> cell_of_source(const Mesh& mesh, CellId e);
+
 /// Returns the living nodes and elements as plain arrays, in ascending order of ids, and which of
-/// their faces are on cuts.
+/// their faces are on cuts. A polyhedron that is as the source has it is of its kind there: see
+/// Mesh::whole_cell().
 /// @param mesh       the mesh
 /// @param positions  by node id; the points of the result
 /// @param nodes      if not null, receives the node id of each point

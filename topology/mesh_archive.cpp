@@ -76,7 +76,8 @@ class MeshArchive {
     /// Completes a polyhedron, and returns the kind of its row.
     static CellKind restore(Mesh::Polyhedron& cell) {
         require(cell.shape.is_sound() && std::ssize(cell.neighbors) == cell.shape.num_faces() &&
-                    static_cast<std::size_t>(cell.row_kind) <= num_cell_kinds,
+                    static_cast<std::size_t>(cell.row_kind) <= num_cell_kinds &&
+                    cell.diagonals.fits(cell.row_kind),
                 "the faces of a polyhedron do not fit together");
         cell.shape.append_corners(cell.corners);
         return cell.row_kind;

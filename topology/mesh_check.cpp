@@ -15,6 +15,7 @@
 #include "incise/topology/corner_check.h"
 #include "incise/topology/flat_cell.h"
 #include "incise/topology/geometry.h"
+#include "incise/topology/joined_quads.h"
 #include "incise/topology/mesh_repair.h"
 #include "incise/topology/polyhedron_check.h"
 
@@ -412,6 +413,7 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
     }
 
     std::vector<FaceKey> faces = sorted_faces(data, source_faces, usable);
+    std::vector<SourceFace> boundary;
     for (std::size_t i = 0; i < faces.size();) {
         std::size_t end = i + 1;
         while (end < faces.size() && faces[end].points == faces[i].points) ++end;
@@ -422,6 +424,7 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
             return !data.is_on_cut(key.face.cell, key.face.face);
         });
         const std::size_t num_others = rest.size(), num_inner = same.size() - num_others;
+        if (num_inner == 1 && num_others == 0) boundary.push_back(same[0].face);
         const std::size_t num_joined = num_inner == 1 && num_others == 1 ? 2 : num_inner;
         if (num_joined == 2) {
             const SourceFace a = std::min(same[0].face, same[1].face),
@@ -437,6 +440,7 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
     }
     std::sort(result.shared_faces.begin(), result.shared_faces.end(),
               [](const SharedFace& a, const SharedFace& b) { return a.a < b.a; });
+    result.joined_quads = find_joined_quads(data, source_faces, boundary);
     errors.finish();
     warnings.finish();
     if (result.errors.empty())

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,14 @@ struct SharedFace {
     int shift = 0;
 };
 
+/// A quadrilateral that is joined to two triangles of other cells: see find_joined_quads().
+struct JoinedQuad {
+    SourceFace quad;
+    int first_end = 0;  ///< see Diagonals
+    /// The one on the corners from the first end of the diagonal on, then the other.
+    std::array<SourceFace, 2> triangles = {};
+};
+
 /// The result of check().
 struct MeshCheck {
     /// What makes the mesh unusable, in the order found. Of many errors of one kind only the first
@@ -27,6 +36,8 @@ struct MeshCheck {
     /// The shared faces, in ascending order of `a`. The list is complete only if there are no
     /// errors.
     std::vector<SharedFace> shared_faces;
+    /// The quadrilaterals that are joined to two triangles, in ascending order.
+    std::vector<JoinedQuad> joined_quads;
 };
 
 /// Checks mesh data. Errors are:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "incise/base/types.h"
 #include "incise/topology/cell_kind.h"
+#include "incise/topology/diagonals.h"
 
 namespace incise::topology {
 
@@ -25,6 +27,8 @@ class CarrierCorners {
     }
 
     CellKind kind() const { return kind_; }
+    /// Its quadrilaterals that are divided, because they met triangles.
+    Diagonals diagonals = {};
     std::size_t size() const { return static_cast<std::size_t>(traits(kind_).num_corners); }
     Vec3* begin() { return corners_.data(); }
     Vec3* end() { return corners_.data() + size(); }
@@ -33,7 +37,8 @@ class CarrierCorners {
     Vec3& operator[](std::size_t k) { return corners_[k]; }
     const Vec3& operator[](std::size_t k) const { return corners_[k]; }
     bool operator==(const CarrierCorners& other) const {
-        return kind_ == other.kind_ && std::equal(begin(), end(), other.begin());
+        return kind_ == other.kind_ && diagonals == other.diagonals &&
+               std::equal(begin(), end(), other.begin());
     }
 
   private:
@@ -59,6 +64,13 @@ struct Carriers {
 
 /// The number of faces that have a bit in MeshData::cut_faces.
 inline constexpr int max_cut_faces = 31;
+
+/// A face of a cell of the source.
+struct SourceFace {
+    std::size_t cell = 0;
+    int face = 0;
+    auto operator<=>(const SourceFace&) const = default;
+};
 
 /// Cells over points, numbered from 0 in the order of the source. The contents may be invalid:
 /// Mesh::build checks them.

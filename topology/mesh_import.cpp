@@ -10,6 +10,7 @@
 #include "incise/base/error.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/hilbert.h"
+#include "incise/topology/joined_quads.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/weld_outlook.h"
 
@@ -55,7 +56,17 @@ class MeshImport {
           check_(check(data, rules.advice)),
           faces_(require_sound(data, check_)),
           keeps_order_(rules.keeps_order || !data.carriers.is_empty()) {
-        if (rules.shared_faces) check_.shared_faces = std::move(*rules.shared_faces);
+        if (rules.shared_faces) {
+            check_.shared_faces = std::move(*rules.shared_faces);
+            diagonals_ = std::move(rules.diagonals);
+            joined_triangles_ = std::move(rules.joined_triangles);
+            return;
+        }
+        joins_ = report_of_joins(data_, check_.joined_quads);
+        diagonals_ = diagonals_of_cells(data_, check_.joined_quads);
+        for (const JoinedQuad& joined : check_.joined_quads)
+            for (const SourceFace triangle : joined.triangles)
+                joined_triangles_.emplace_back(joined.quad, triangle);
     }
 
     BuiltMesh run() {
@@ -65,8 +76,9 @@ class MeshImport {
         divide_pinched_nodes();
         add_cells();
         join_faces();
+        join_quads();
         mesh_.source_carriers_ = data_.carriers;
-        return {std::move(mesh_), std::move(check_.warnings)};
+        return {std::move(mesh_), std::move(check_.warnings), std::move(joins_)};
     }
 
   private:
@@ -151,6 +163,9 @@ class MeshImport {
         for (const SharedFace& shared : check_.shared_faces)
             for (int p = 0; p < faces_.size(shared.a); ++p)
                 sets.join(corner_slot(shared.a, p), corner_slot(shared.b, shared.shift - p));
+        for (const auto& [quad, triangle] : joined_triangles_)
+            for (int p = 0; p < 3; ++p)
+                sets.join(corner_slot(triangle, p), slot_of(quad.cell, faces_.point(triangle, p)));
         // Slots are in ascending order of elements. The set of the first slot of a node keeps the
         // node.
         std::vector<std::size_t> first_set(mesh_.rest_positions_.size(), slots_.size());
@@ -230,11 +245,38 @@ class MeshImport {
                 if (data_.is_on_cut(c, f)) mesh_.set_inside({element_of_cell_[c], f});
     }
 
+    /// Divides the quadrilaterals that meet two triangles, and joins them.
+    void join_quads() {
+        for (std::size_t c = 0; c < diagonals_.size(); ++c) {
+            if (diagonals_[c].is_none()) continue;
+            const CellId e = element_of_cell_[c];
+            WholeCell cell = *mesh_.whole_cell(e);
+            cell.diagonals = diagonals_[c];
+            mesh_.set_shape(e, CellKind::polyhedron, cell.shape(mesh_.inside_faces_[e.index()]));
+            mesh_.polyhedra_.at(e).diagonals = diagonals_[c];
+        }
+        for (const auto& [quad, triangle] : joined_triangles_) {
+            // Triangles keep their numbers where other faces of their cell are divided.
+            const FaceId other{element_of_cell_[triangle.cell], triangle.face};
+            FaceId half{element_of_cell_[quad.cell], quad.face};
+            const int end = mesh_.num_faces(half.cell);
+            while (half.face < end && matching_shift(mesh_, half, other) < 0) ++half.face;
+            if (half.face == end)
+                throw InputError(data_.cell_name(triangle.cell) +
+                                 " has a triangle that does not fit the quadrilateral of " +
+                                 data_.cell_name(quad.cell) + " that it is joined to");
+            mesh_.glue(half, other);
+        }
+    }
+
     static constexpr std::size_t max_pinches_listed = 5;
 
     const MeshData& data_;
     MeshCheck check_;
     SourceFaces faces_;
+    std::vector<std::string> joins_;
+    std::vector<Diagonals> diagonals_;  // by cell; empty if there are none
+    std::vector<std::pair<SourceFace, SourceFace>> joined_triangles_;  // quadrilateral, triangle
     bool keeps_order_;
     Mesh mesh_;
     std::vector<std::size_t> cell_of_element_;

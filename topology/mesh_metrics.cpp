@@ -137,13 +137,11 @@ double face_area(const SourceFaces& faces, SourceFace face) {
     return 0.5 * (triangle(0, 1, 2) + triangle(0, 2, 3) + triangle(0, 1, 3) + triangle(1, 2, 3));
 }
 
-double surface_area(const MeshData& data, const SourceFaces& faces,
-                    const std::vector<SharedFace>& shared_faces) {
+double surface_area(const MeshData& data, const SourceFaces& faces, const MeshCheck& found) {
     std::vector<SourceFace> shared;
-    for (const auto& pair : shared_faces) {
-        shared.push_back(pair.a);
-        shared.push_back(pair.b);
-    }
+    for (const auto& pair : found.shared_faces) shared.insert(shared.end(), {pair.a, pair.b});
+    for (const JoinedQuad& joined : found.joined_quads)
+        shared.insert(shared.end(), {joined.quad, joined.triangles[0], joined.triangles[1]});
     std::sort(shared.begin(), shared.end());
     double area = 0.0;
     auto next = shared.begin();
@@ -156,6 +154,21 @@ double surface_area(const MeshData& data, const SourceFaces& faces,
                 area += face_area(faces, face);
         }
     return area;
+}
+
+/// Returns by how much cells grow as diagonals divide their quadrilaterals, m3. Between the two
+/// halves and the same about the mean of the corners is half a tetrahedron.
+double growth_by_diagonals(const MeshData& data, const SourceFaces& faces,
+                           const std::vector<JoinedQuad>& joined_quads) {
+    double sum = 0.0;
+    for (const JoinedQuad& joined : joined_quads) {
+        std::array<Vec3, 4> x;
+        for (int p = 0; p < 4; ++p)
+            x[static_cast<std::size_t>(p)] = data.points[static_cast<std::size_t>(
+                faces.point(joined.quad, (joined.first_end + p) % 4))];
+        sum -= 0.5 * tetrahedron_volume(x[0], x[1], x[2], x[3]);
+    }
+    return sum;
 }
 
 }  // namespace
@@ -177,15 +190,16 @@ double min_altitude(CellKind kind, std::span<const Vec3> corners) {
 }
 
 double min_altitude(const Mesh& mesh, CellId e) {
-    if (mesh.is_polyhedron(e)) {
+    const auto whole = mesh.whole_cell(e);
+    if (!whole) {
         double largest = 0.0;
         for (int f = 0; f < mesh.num_faces(e); ++f)
             largest = std::max(largest, rest_area(mesh, {e, f}));
         return 3.0 * rest_volume(mesh, e) / largest;
     }
     std::vector<Vec3> x;
-    for (const VertexId n : mesh.corners(e)) x.push_back(mesh.rest_position(n));
-    return min_altitude(mesh.kind(e), x);
+    for (const VertexId n : whole->corners()) x.push_back(mesh.rest_position(n));
+    return min_altitude(whole->kind, x);
 }
 
 ShapeMetrics measure_shapes(const Mesh& mesh) {
@@ -196,11 +210,12 @@ ShapeMetrics measure_shapes(const Mesh& mesh) {
     std::vector<Vec3> x;
     for (const CellId e : mesh.elements()) {
         x.clear();
-        for (const VertexId n : mesh.corners(e)) {
+        const auto whole = mesh.whole_cell(e);
+        for (const VertexId n : whole ? whole->corners() : mesh.corners(e)) {
             x.push_back(mesh.rest_position(n));
             shapes.box.extend(x.back());
         }
-        if (!mesh.is_polyhedron(e)) measure_cell(mesh.kind(e), x, metrics);
+        if (whole) measure_cell(whole->kind, x, metrics);
         shapes.min_altitude = std::min(shapes.min_altitude, min_altitude(mesh, e));
         for (int f = 0; f < mesh.num_faces(e); ++f)
             for (int p = 0; p < mesh.face_size({e, f}); ++p)
@@ -230,7 +245,8 @@ MeshMetrics measure(const MeshData& data) {
     const SourceFaces faces(data);
     measure_cells(data, faces, metrics);
     measure_edges(data, faces, metrics);
-    metrics.surface_area = surface_area(data, faces, found.shared_faces);
+    metrics.volume += growth_by_diagonals(data, faces, found.joined_quads);
+    metrics.surface_area = surface_area(data, faces, found);
     return metrics;
 }
 

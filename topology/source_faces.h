@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -10,13 +9,6 @@
 #include "incise/topology/mesh_data.h"
 
 namespace incise::topology {
-
-/// A face of a cell of the source.
-struct SourceFace {
-    std::size_t cell = 0;
-    int face = 0;
-    auto operator<=>(const SourceFace&) const = default;
-};
 
 /// The faces of all cells. Those of polyhedra are found in MeshData::faces at once.
 class SourceFaces {

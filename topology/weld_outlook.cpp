@@ -32,6 +32,8 @@ std::vector<SourceFace> boundary_of(const MeshData& data, const SourceFaces& fac
         for (int f = 0; f < faces.num_faces(c); ++f) all.push_back({c, f});
     for (const SharedFace& shared : checked.shared_faces)
         inner.insert(inner.end(), {shared.a, shared.b});
+    for (const JoinedQuad& joined : checked.joined_quads)
+        inner.insert(inner.end(), {joined.quad, joined.triangles[0], joined.triangles[1]});
     std::ranges::sort(inner);
     std::ranges::set_difference(all, inner, std::back_inserter(boundary));
     return boundary;
@@ -94,8 +96,13 @@ WeldOutlook outlook_of_weld(const MeshData& data) {
                                 {}, &SharedFace::a, &SharedFace::a);
     std::vector<bool> hangs_together(data.points.size(), false);
     const SourceFaces faces(welded);
-    for (const SharedFace& shared : gained)
-        for (const std::size_t p : points_of(faces, shared.a)) hangs_together[p] = true;
+    const auto join = [&](SourceFace f) {
+        for (const std::size_t p : points_of(faces, f)) hangs_together[p] = true;
+    };
+    for (const SharedFace& shared : gained) join(shared.a);
+    for (const JoinedQuad& joined : after.joined_quads)
+        if (!std::ranges::binary_search(before.joined_quads, joined.quad, {}, &JoinedQuad::quad))
+            join(joined.quad);
     for (std::size_t p = 0; p < data.points.size(); ++p)
         if (welded.is_welded(p) && !hangs_together[static_cast<std::size_t>(welded.welded_to[p])])
             ++outlook.num_idle;

@@ -14,7 +14,7 @@
 namespace incise::topology {
 
 /// A quadrilateral boundary face, and the triangular boundary faces on it: they have three of its
-/// four corners. Such faces are never one face.
+/// four corners. Such faces are not joined: find_joined_quads() says which would be.
 struct UnlikeFaces {
     std::size_t cell;                       ///< of the quadrilateral
     std::vector<std::size_t> of_triangles;  ///< the cells of the triangles, ascending; at least one
@@ -30,7 +30,7 @@ std::string name_of(const UnlikeFaces& faces, const MeshData& data);
 
 /// What joins a quadrilateral and triangles on it: the end of a message.
 inline constexpr const char* remedy_for_unlike_faces =
-    "put a layer of pyramids between them, each with its base on such a quadrilateral";
+    "let two triangles, which share one of its diagonals, cover each such quadrilateral";
 
 /// The predicted result of welding.
 struct WeldOutlook {

@@ -76,10 +76,10 @@ struct Face {
     double width;  // the shortest altitude, m
 };
 
-/// Appends the opened faces of a cell. Faces of cells that are no polyhedra were opened whole, or
-/// lie beside what was removed.
+/// Appends the opened faces of a cell. Faces of whole cells were opened whole, or lie beside what
+/// was removed.
 void append_opened_faces(const Mesh& mesh, CellId e, std::vector<Face>& faces) {
-    if (!mesh.is_polyhedron(e)) return;
+    if (!mesh.is_polyhedron(e) || mesh.whole_cell(e)) return;
     for (int f = 0; f < mesh.num_faces(e); ++f) {
         const FaceId face{e, f};
         if (!mesh.is_on_cut(face)) continue;
@@ -210,8 +210,8 @@ void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes) {
         double area = 0.0;
         bool is_beside = false;
         for (const CellId e : star) {
-            // Faces of other cells were opened whole, or lie beside what was removed.
-            if (!mesh.is_polyhedron(e)) continue;
+            // Faces of whole cells were opened whole, or lie beside what was removed.
+            if (!mesh.is_polyhedron(e) || mesh.whole_cell(e)) continue;
             for (int f = 0; f < mesh.num_faces(e); ++f) {
                 const FaceId face{e, f};
                 if (!mesh.is_on_cut(face)) continue;

@@ -24,6 +24,8 @@ namespace incise::io {
 inline constexpr const char* carrier_array = "carrier";
 inline constexpr const char* carrier_corners_array = "carrier_corners";
 inline constexpr const char* carrier_types_array = "carrier_types";
+/// The array of the field data with Diagonals::bits() of carriers, if any has diagonals.
+inline constexpr const char* carrier_diagonals_array = "carrier_diagonals";
 
 /// Returns the cell array of .vtu files that contains topology::MeshData::cut_faces, or entry
 /// `list - 1` of further_cut_faces. Its name has the number of its first face: cut_faces_31.

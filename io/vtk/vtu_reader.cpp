@@ -85,7 +85,9 @@ class VtuReader {
         const VtkXmlArrays arrays(file_, encoding_of(root, text));
         const auto field_data = root.child("UnstructuredGrid").child("FieldData");
         const auto corners = named(field_data, carrier_corners_array);
-        if (corners) read_carrier_corners(arrays, corners, named(field_data, carrier_types_array));
+        if (corners)
+            read_carrier_corners(arrays, corners, named(field_data, carrier_types_array),
+                                 named(field_data, carrier_diagonals_array));
         const auto pieces = root.child("UnstructuredGrid").children("Piece");
         const auto num_pieces = std::distance(pieces.begin(), pieces.end());
         std::size_t index = 0;
@@ -152,7 +154,7 @@ class VtuReader {
     }
 
     void read_carrier_corners(const VtkXmlArrays& arrays, pugi::xml_node array,
-                              pugi::xml_node types) {
+                              pugi::xml_node types, pugi::xml_node diagonals) {
         constexpr std::size_t size_of_tetrahedron = 12;  // four positions
         const std::size_t size = types ? 3 * topology::max_corners : size_of_tetrahedron;
         if (arrays.num_components(array) != size)
@@ -164,6 +166,8 @@ class VtuReader {
         const auto type_of_row =
             types ? arrays.integers(types, num_rows)
                   : std::vector<std::int64_t>(num_rows, vtk_cell_type(CellKind::tetrahedron));
+        const auto diagonals_of_row = diagonals ? arrays.integers(diagonals, num_rows)
+                                                : std::vector<std::int64_t>(num_rows, 0);
         for (std::size_t row = 0; row < num_rows; ++row) {
             const auto kind = kind_of_vtk_cell(type_of_row[row]);
             if (!kind || *kind == CellKind::polyhedron)
@@ -174,7 +178,14 @@ class VtuReader {
             std::array<Vec3, topology::max_corners> x;
             const double* at = numbers.data() + size * row;
             for (std::size_t k = 0; k < size / 3; ++k) x[k] = Vec3(at + 3 * k);
-            result_.mesh.carriers.corners.emplace_back(*kind, std::span(x).first(size / 3));
+            auto& corners =
+                result_.mesh.carriers.corners.emplace_back(*kind, std::span(x).first(size / 3));
+            const auto bits = static_cast<std::uint16_t>(diagonals_of_row[row]);
+            corners.diagonals = topology::Diagonals::of_bits(bits);
+            if (bits != diagonals_of_row[row] || !corners.diagonals.fits(*kind))
+                arrays.fail(diagonals, "carrier " + std::to_string(row) + " has the diagonals " +
+                                           std::to_string(diagonals_of_row[row]) +
+                                           ", which its kind cannot have; write the file again");
         }
     }
 

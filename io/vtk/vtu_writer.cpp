@@ -150,6 +150,12 @@ void add_carriers(vtkUnstructuredGrid& grid, const MeshData& mesh) {
     const auto type_of_row = copy_as_array<vtkTypeInt32Array>(types);
     type_of_row->SetName(carrier_types_array);
     grid.GetFieldData()->AddArray(type_of_row);
+    std::vector<int> diagonals;
+    for (const auto& of_row : carriers.corners) diagonals.push_back(of_row.diagonals.bits());
+    if (std::ranges::all_of(diagonals, [](int bits) { return bits == 0; })) return;
+    const auto diagonals_of_row = copy_as_array<vtkTypeInt32Array>(diagonals);
+    diagonals_of_row->SetName(carrier_diagonals_array);
+    grid.GetFieldData()->AddArray(diagonals_of_row);
 }
 
 void add_cut_faces(vtkUnstructuredGrid& grid, const MeshData& mesh) {

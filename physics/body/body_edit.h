@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <concepts>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,11 +35,22 @@ struct BodyView {
     /// and one whose faces have other corners than its fragment, has the same at each corner.
     double mass_at_corner(CellId cell, std::size_t corner) const {
         const ElementId e = fragments.fragment_of_cell(cell);
-        if (fragments.cells_of(e).size() == 1 && fragments.volume_share(e) == 1.0 &&
-            !mesh.is_polyhedron(cell))
-            return elements.block_of(fragments, e).contributions(e).mass[corner];
+        if (fragments.cells_of(e).size() == 1 && fragments.volume_share(e) == 1.0)
+            if (const auto of_element = corner_of_element(cell, corner))
+                return elements.block_of(fragments, e).contributions(e).mass[*of_element];
         return elements.density(mesh.region(cell)) * topology::rest_volume(mesh, cell) /
                static_cast<double>(mesh.corners(cell).size());
+    }
+
+  private:
+    /// Returns the number that a corner of a whole cell has in its element.
+    std::optional<std::size_t> corner_of_element(CellId cell, std::size_t corner) const {
+        if (!mesh.is_polyhedron(cell)) return corner;
+        const auto whole = mesh.whole_cell(cell);
+        if (!whole) return std::nullopt;
+        const auto corners = whole->corners();
+        return static_cast<std::size_t>(std::ranges::find(corners, mesh.corners(cell)[corner]) -
+                                        corners.begin());
     }
 };
 

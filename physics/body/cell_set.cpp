@@ -154,11 +154,19 @@ void FaceSet::apply(const Mesh& mesh, const ChangeSet& changes) {
 
 namespace {
 
+/// Returns the node that a node is after an edit: another one if it was merged into that.
+VertexId survivor_of(VertexId n, const ChangeSet& changes) {
+    const VertexRecord* record = find_record(changes.nodes_removed, n);
+    return record && record->num_sources == 1 ? record->sources[0].node : n;
+}
+
 /// True if all corners of a face are corners of another one, or lie between such.
 bool lies_in(std::span<const VertexId> part, std::span<const VertexId> whole,
              const ChangeSet& changes) {
     const auto is_in = [&](const auto& self, VertexId n) -> bool {
-        if (std::ranges::find(whole, n) != whole.end()) return true;
+        if (std::ranges::any_of(whole,
+                                [&](VertexId v) { return v == n || survivor_of(v, changes) == n; }))
+            return true;
         if (n.index() < changes.node_capacity_before) return false;
         const VertexRecord* record = find_record(changes.nodes_added, n);
         if (!record || record->num_sources == 0) return false;

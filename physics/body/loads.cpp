@@ -30,14 +30,14 @@ PressedFace face_in_fragment(const BodyView& body, CellId cell, std::span<const 
 }
 
 /// Calls visit(face) for the members that carry a load: whole faces that are on the boundary. Those
-/// of polyhedra come in triangles.
+/// of polyhedra that edits have made come in triangles.
 template <class Visit>
 void for_loaded(const FaceSet& faces, const BodyView& body, Visit visit) {
     const topology::Mesh& mesh = body.mesh;
     for (const FaceSet::Member& member : faces.members()) {
         const FaceId f = member.face;
         if (member.left_to.is_valid() || !is_on_boundary(mesh, f)) continue;
-        if (mesh.is_polyhedron(f.cell)) {
+        if (mesh.is_polyhedron(f.cell) && !mesh.whole_cell(f.cell)) {
             topology::for_each_triangle(mesh, f, [&](VertexId a, VertexId b, VertexId c) {
                 visit(face_in_fragment(body, f.cell, std::array{a, b, c}));
             });

@@ -55,7 +55,7 @@ struct CellState {
               const typename Kernel::Corners& x) {
         typename Kernel::Corners u;
         for (std::size_t k = 0; k < u.size(); ++k) u[k] = x[k] - e.rest[k];
-        const auto at = Division::points(u);
+        const auto at = Division::points(u, e.diagonals);
         for (std::size_t t = 0; t < parts.size(); ++t) {
             const auto& p = parts[t];
             Mat3 edges;
@@ -138,7 +138,7 @@ typename CentreDivision<kind>::Corners forces_of_stresses(
         const Mat3 P = part.scale * stresses[t] + volumetric * cofactors(Mat3::Identity() + part.H);
         add_forces(P, e.volumes[t], e.inverse_edges[t], CellState<kind>::parts[t], f);
     }
-    return Division::gathered(f);
+    return Division::gathered(f, e.diagonals);
 }
 
 }  // namespace incise::physics

@@ -38,6 +38,7 @@ struct ElementInput {
     /// How much of each tetrahedron of a cell is material, see FragmentMesh::part_shares. Empty: as
     /// much of each. Ignored by kernels that do not take it.
     std::span<const double> part_shares = {};
+    topology::Diagonals diagonals = {};  ///< of a cell; ignored likewise
 };
 
 /// A trial state at the end of a step of an implicit solver or of statics.

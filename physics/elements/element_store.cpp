@@ -30,7 +30,8 @@ std::shared_ptr<ElementBlock> make_centre_block(const HyperElasticLinks& links, 
 }
 
 /// Makes a block without elements.
-/// @param is_divided  a box of hybrid springs with less or more material than the box
+/// @param is_divided  a box of hybrid springs with less or more material than the box, or with
+///                    faces that meet triangles
 std::shared_ptr<ElementBlock> make_block(const Material& material, Precision precision,
                                          CellKind kind, bool is_divided) {
     if (const auto* springs = std::get_if<MassSprings>(&material.method))
@@ -66,7 +67,7 @@ std::optional<std::string> why_no_centre_cell(const FragmentMesh& fragments, Ele
             typename VirtualCentreKernel<kind>::Corners corners;
             for (std::size_t k = 0; k < corners.size(); ++k)
                 corners[k] = fragments.rest_position(fragments.corners(e)[k]);
-            return VirtualCentreKernel<kind>::why_no_cell(corners);
+            return VirtualCentreKernel<kind>::why_no_cell(corners, fragments.diagonals(e));
         });
 }
 
@@ -191,16 +192,20 @@ bool ElementStore::has_springs_in_boxes(int region) const {
 }
 
 std::size_t ElementStore::next_form(const FragmentMesh& fragments, ElementId e) const {
-    const bool is_divided = !fragments.part_shares(e).empty() || fragments.volume_share(e) != 1.0;
+    const bool is_divided = !fragments.part_shares(e).empty() || fragments.volume_share(e) != 1.0 ||
+                            !fragments.diagonals(e).is_none();
     return is_divided && has_springs_in_boxes(fragments.region(e))
                ? form_of_divided_box
                : static_cast<std::size_t>(fragments.kind(e));
 }
 
 ElementInput ElementStore::input_of(const FragmentMesh& fragments, ElementId e) const {
-    return {fragments.corners(e), fragments.rest_positions(),
-            fibres_ ? (*fibres_)[e] : Vec3(Vec3::Zero()), fragments.volume_share(e),
-            fragments.part_shares(e)};
+    return {fragments.corners(e),
+            fragments.rest_positions(),
+            fibres_ ? (*fibres_)[e] : Vec3(Vec3::Zero()),
+            fragments.volume_share(e),
+            fragments.part_shares(e),
+            fragments.diagonals(e)};
 }
 
 void ElementStore::insert(const FragmentMesh& fragments, ElementId e) {

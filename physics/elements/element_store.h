@@ -67,7 +67,7 @@ struct UnsuitableMaterial : InputError {
 ///
 /// A box of HybMSS that a cut has divided, or that carries a light part of another one, is computed
 /// by HEML on the tetrahedra about its centre: see links_of_divided_box(). If the cut is taken
-/// back, it is HybMSS again.
+/// back, it is HybMSS again. A box of which a face meets two triangles is so from the start.
 class ElementStore {
   public:
     /// Builds the blocks of a mesh. Throws UnsuitableMaterial for a region without material and for
@@ -212,7 +212,7 @@ class ElementStore {
     ElementBlock& editable(std::size_t block);
 
     /// The forms of elements: the kinds of cells, and boxes of HybMSS with less or more material
-    /// than the box has.
+    /// than the box has, or with faces that meet triangles.
     static constexpr std::size_t form_of_divided_box = topology::num_cell_kinds,
                                  num_forms = topology::num_cell_kinds + 1;
     std::size_t index_of_form(ElementId e, int region, std::size_t form) const;

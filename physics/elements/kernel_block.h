@@ -402,7 +402,8 @@ class KernelBlock final : public ElementBlock {
             for (std::size_t t = 0; t < input.part_shares.size(); ++t)
                 relative[t] = input.part_shares[t] / input.share;
             row.rest = kernel_.precompute(X, input.fibre,
-                                          std::span(relative).first(input.part_shares.size()));
+                                          std::span(relative).first(input.part_shares.size()),
+                                          input.diagonals);
         } else if constexpr (TakesFibre<Kernel>) {
             row.rest = kernel_.precompute(X, input.fibre);
         } else {

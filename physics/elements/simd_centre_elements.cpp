@@ -61,6 +61,7 @@ void SimdCentreElements<kind>::assign_groups(std::size_t num_elements, bool with
     groups_.assign((num_elements + size - 1) / size, unused);
     fibres_.assign(with_fibres ? groups_.size() : 0, CentreFibres<kind>{});
     shares_.clear();
+    weights_.clear();
 }
 
 template <CellKind kind>
@@ -71,6 +72,7 @@ void SimdCentreElements<kind>::set_cell(std::size_t i, const Cell& cell, double 
         for (CentreShares<kind>& of_group : shares_)
             for (auto& of_part : of_group.parts) std::ranges::fill(of_part, 1.0);
     }
+    set_weights(g, lane, cell.diagonals);
     groups_[g].per_volume[lane] = 1.0 / (share * cell.volume);
     for (std::size_t t = 0; t < num_parts; ++t) {
         const double per_volume = 6.0 * cell.inverse_edges[t].determinant();
@@ -86,12 +88,33 @@ void SimdCentreElements<kind>::set_cell(std::size_t i, const Cell& cell, double 
 }
 
 template <CellKind kind>
+void SimdCentreElements<kind>::set_weights(std::size_t group, std::size_t lane,
+                                           topology::Diagonals diagonals) {
+    using fragments::QuadWeights;
+    if (weights_.empty() && diagonals.is_none()) return;
+    const auto set = [](auto& of_face, std::size_t of_lane, const QuadWeights& weights) {
+        of_face.even[of_lane] = weights.even;
+        of_face.odd[of_lane] = weights.odd;
+    };
+    if (weights_.empty()) {
+        weights_.resize(groups_.size());
+        for (CentreWeights<kind>& of_group : weights_)
+            for (auto& of_face : of_group.faces)
+                for (std::size_t l = 0; l < CentreWeights<kind>::size; ++l) set(of_face, l, {});
+    }
+    std::size_t quad = 0;
+    const auto& traits = CentreDivision<kind>::traits;
+    for (int f = 0; f < traits.num_faces; ++f)
+        if (traits.face(f).size() == 4)
+            set(weights_[group].faces[quad++], lane, fragments::quad_weights(diagonals, f));
+}
+
+template <CellKind kind>
 void SimdCentreElements<kind>::add_forces_of(const Law& law, double J0,
                                              const LocalVector* positions,
                                              LocalVector* forces) const {
     static AddCentreForces<kind>* const add = centre_forces_for<kind>(processor());
-    add(law, J0, groups_, fibres_.empty() ? nullptr : fibres_.data(),
-        shares_.empty() ? nullptr : shares_.data(), positions, forces);
+    add(law, J0, groups_, extras(), positions, forces);
 }
 
 template <CellKind kind>
@@ -100,8 +123,7 @@ void SimdCentreElements<kind>::set_stiffening_of(const Law& law, double J0,
                                                  std::span<double> factors) const {
     static CentreStiffening<kind>* const compute = centre_stiffening_for<kind>(processor());
     const auto of_groups = room_for<ElementFactors<double>>(groups_.size());
-    compute(law, J0, groups_, fibres_.empty() ? nullptr : fibres_.data(),
-            shares_.empty() ? nullptr : shares_.data(), positions, of_groups.data());
+    compute(law, J0, groups_, extras(), positions, of_groups.data());
     std::size_t i = 0;
     for (std::size_t lane = 0; i < factors.size(); ++lane)
         for (std::size_t g = 0; g < of_groups.size() && i < factors.size(); ++g)

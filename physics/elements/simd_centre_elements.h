@@ -39,6 +39,30 @@ struct CentreShares {
     alignas(64) double parts[CentreDivision<kind>::num_parts][size];
 };
 
+/// The weights of the centres of faces in a group of cells: see fragments::QuadWeights.
+template <topology::CellKind kind>
+struct CentreWeights {
+    static constexpr std::size_t size = CentreGroup<kind>::size;
+    struct alignas(64) OfFace {
+        double even[size], odd[size];
+    };
+    OfFace faces[CentreDivision<kind>::num_quads];
+};
+
+/// What only some groups of cells need; null where no cell of the block does.
+template <topology::CellKind kind>
+struct CentreExtras {
+    const CentreFibres<kind>* fibres = nullptr;    ///< of a law with fibres
+    const CentreShares<kind>* shares = nullptr;    ///< else all are 1
+    const CentreWeights<kind>* weights = nullptr;  ///< else all are 1/4
+
+    /// Returns those of one group.
+    CentreExtras of(std::size_t group) const {
+        return {fibres ? fibres + group : nullptr, shares ? shares + group : nullptr,
+                weights ? weights + group : nullptr};
+    }
+};
+
 /// The cells of a block. Cells are numbered from 0 in the order of the block. All results are the
 /// same bit for bit on every processor.
 template <topology::CellKind kind>
@@ -52,7 +76,8 @@ class SimdCentreElements {
     /// Sets the values of cell `i`, except for its nodes.
     template <class Element>
     void set(std::size_t i, const Element& e, double share) {
-        set_cell(i, {e.volumes, e.inverse_edges, e.volume, e.fibre, e.is_whole}, share);
+        set_cell(i, {e.volumes, e.inverse_edges, e.volume, e.fibre, e.is_whole, e.diagonals},
+                 share);
     }
     /// Sets the nodes of all cells; see set_offsets_of_lanes().
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare) {
@@ -82,8 +107,10 @@ class SimdCentreElements {
     std::span<const std::byte> bytes() const { return std::as_bytes(std::span(groups_)); }
 
     std::span<const CentreGroup<kind>> groups() const { return groups_; }
-    std::span<const CentreFibres<kind>> fibres() const { return fibres_; }
-    std::span<const CentreShares<kind>> shares() const { return shares_; }
+    CentreExtras<kind> extras() const {
+        const auto data = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
+        return {data(fibres_), data(shares_), data(weights_)};
+    }
 
   private:
     static constexpr std::size_t num_parts = CentreDivision<kind>::num_parts;
@@ -93,25 +120,28 @@ class SimdCentreElements {
         double volume;
         const Vec3& fibre;
         bool is_whole;
+        topology::Diagonals diagonals;
     };
     void assign_groups(std::size_t num_elements, bool with_fibres);
     void set_cell(std::size_t i, const Cell& cell, double share);
+    void set_weights(std::size_t group, std::size_t lane, topology::Diagonals diagonals);
     void add_forces_of(const Law& law, double J0, const LocalVector* positions,
                        LocalVector* forces) const;
     void set_stiffening_of(const Law& law, double J0, const LocalVector* positions,
                            std::span<double> factors) const;
 
     std::vector<CentreGroup<kind>> groups_;
-    std::vector<CentreFibres<kind>> fibres_;  // empty for a law without fibres
-    std::vector<CentreShares<kind>> shares_;  // empty if all are 1
+    std::vector<CentreFibres<kind>> fibres_;    // empty for a law without fibres
+    std::vector<CentreShares<kind>> shares_;    // empty if all are 1
+    std::vector<CentreWeights<kind>> weights_;  // empty if no face is divided
 };
 
-/// Adds the forces of groups. `fibres` is null for a law without fibres, `shares` if all are 1.
+/// Adds the forces of groups. `extras` are those of the first one.
 template <topology::CellKind kind>
 using AddCentreForces = void(const Law& law, double inversion_threshold,
                              std::span<const CentreGroup<kind>> groups,
-                             const CentreFibres<kind>* fibres, const CentreShares<kind>* shares,
-                             const LocalVector* positions, LocalVector* forces);
+                             const CentreExtras<kind>& extras, const LocalVector* positions,
+                             LocalVector* forces);
 /// Returns the function that SimdCentreElements::add_forces calls on a processor.
 template <topology::CellKind kind>
 AddCentreForces<kind>* centre_forces_for(Processor processor);
@@ -119,8 +149,8 @@ AddCentreForces<kind>* centre_forces_for(Processor processor);
 template <topology::CellKind kind>
 using CentreStiffening = void(const Law& law, double inversion_threshold,
                               std::span<const CentreGroup<kind>> groups,
-                              const CentreFibres<kind>* fibres, const CentreShares<kind>* shares,
-                              const LocalVector* positions, ElementFactors<double>* factors);
+                              const CentreExtras<kind>& extras, const LocalVector* positions,
+                              ElementFactors<double>* factors);
 /// Returns the function that SimdCentreElements::set_stiffening calls on a processor.
 template <topology::CellKind kind>
 CentreStiffening<kind>* centre_stiffening_for(Processor processor);

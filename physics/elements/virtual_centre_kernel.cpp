@@ -17,8 +17,9 @@ namespace incise::physics {
 using topology::CellKind;
 
 template <CellKind kind>
-std::optional<std::string> VirtualCentreKernel<kind>::why_no_cell(const Corners& X) {
-    const auto at = Division::points(X);
+std::optional<std::string> VirtualCentreKernel<kind>::why_no_cell(const Corners& X,
+                                                                  topology::Diagonals diagonals) {
+    const auto at = Division::points(X, diagonals);
     for (const auto& p : Division::parts())
         if (!(topology::tetrahedron_volume(at[p[0]], at[p[1]], at[p[2]], at[p[3]]) > 0.0))
             return "is so distorted that a part between its centre and one of its faces has no "
@@ -28,10 +29,12 @@ std::optional<std::string> VirtualCentreKernel<kind>::why_no_cell(const Corners&
 
 template <CellKind kind>
 typename VirtualCentreKernel<kind>::Element VirtualCentreKernel<kind>::precompute(
-    const Corners& X, const Vec3& fibre, std::span<const double> part_shares) const {
+    const Corners& X, const Vec3& fibre, std::span<const double> part_shares,
+    topology::Diagonals diagonals) const {
     assert(part_shares.empty() || part_shares.size() == num_parts);
-    const auto at = Division::points(X);
+    const auto at = Division::points(X, diagonals);
     Element e;
+    e.diagonals = diagonals;
     e.rest = X;
     e.volume = 0.0;
     e.is_whole = std::ranges::all_of(part_shares, [](double share) { return share == 1.0; });
@@ -53,7 +56,7 @@ VirtualCentreKernel<kind>::mass_fractions(const Element& e) const {
     for (std::size_t t = 0; t < num_parts; ++t)
         for (const std::size_t p : CellState<kind>::parts[t])
             of_points[p] += 0.25 * e.volumes[t] / e.volume;
-    return Division::gathered(of_points);
+    return Division::gathered(of_points, e.diagonals);
 }
 
 namespace {
@@ -71,7 +74,7 @@ double ratio_of_part(const typename VirtualCentreKernel<kind>::Element& e,
 
 template <CellKind kind>
 double VirtualCentreKernel<kind>::volume_ratio(const Element& e, const Corners& x) const {
-    const auto at = Division::points(x);
+    const auto at = Division::points(x, e.diagonals);
     double volume = 0.0;
     for (std::size_t t = 0; t < num_parts; ++t)
         if (e.volumes[t] > 0.0) volume += e.volumes[t] * ratio_of_part<kind>(e, at, t);
@@ -82,7 +85,7 @@ template <CellKind kind>
 double VirtualCentreKernel<kind>::least_volume_ratio(const Element& e, const Corners& x) const {
     double least = std::numeric_limits<double>::infinity();
     std::array<bool, Division::num_points> has_gap{};
-    const auto at = Division::points(x);
+    const auto at = Division::points(x, e.diagonals);
     for (std::size_t t = 0; t < num_parts; ++t)
         if (e.volumes[t] > 0.0)
             least = std::min(least, ratio_of_part<kind>(e, at, t));
@@ -172,7 +175,7 @@ typename VirtualCentreKernel<kind>::Tangent VirtualCentreKernel<kind>::tangent(
             Corners motion;
             motion.fill(Vec3::Zero());
             motion[corner][axis] = 1.0;
-            const auto at = Division::points(motion);
+            const auto at = Division::points(motion, e.diagonals);
             std::array<Mat3, num_parts> dF, dP;
             std::array<double, num_parts> dJ, ds, dq;
             double d_mean_J = 0.0, d_mean_q = 0.0;
@@ -221,7 +224,7 @@ typename VirtualCentreKernel<kind>::Tangent VirtualCentreKernel<kind>::tangent(
                                        volumetric * cofactor_change(p.F, dF[t]);
                 add_forces(of_stress, e.volumes[t], e.inverse_edges[t], parts[t], f);
             }
-            const Corners change = Division::gathered(f);
+            const Corners change = Division::gathered(f, e.diagonals);
             const auto column = static_cast<Eigen::Index>(3 * corner) + axis;
             for (std::size_t k = 0; k < num_corners; ++k)
                 K.col(column).template segment<3>(static_cast<Eigen::Index>(3 * k)) = -change[k];
@@ -247,7 +250,7 @@ typename VirtualCentreKernel<kind>::Tangent VirtualCentreKernel<kind>::rest_tang
             at_points[p[k]] += gradient;
             at_points[p[0]] -= gradient;
         }
-        const Corners at_corners = Division::gathered(at_points);
+        const Corners at_corners = Division::gathered(at_points, e.diagonals);
         for (std::size_t k = 0; k < num_corners; ++k)
             of_part[t].col(static_cast<Eigen::Index>(k)) = at_corners[k];
         mean += e.volumes[t] / e.volume * of_part[t];

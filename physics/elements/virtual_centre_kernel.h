@@ -42,7 +42,8 @@ struct VirtualCentreKernel {
         std::array<Mat3, num_parts> inverse_edges;  ///< LinkElement::inverse_edges of each, 1/m
         /// a0, the direction of the fibres at rest, of unit length; zero for a law without fibres.
         Vec3 fibre = Vec3::Zero();
-        bool is_whole = true;  ///< all shares of its tetrahedra are 1
+        bool is_whole = true;                ///< all shares of its tetrahedra are 1
+        topology::Diagonals diagonals = {};  ///< that divide its quadrilaterals
     };
 
     Law law;
@@ -50,16 +51,19 @@ struct VirtualCentreKernel {
 
     /// Returns the reason why a cell with these corners at rest, m, cannot be an element: one of
     /// its tetrahedra is turned inside out, or flat. Returns nothing if it can.
-    static std::optional<std::string> why_no_cell(const Corners& X);
+    static std::optional<std::string> why_no_cell(const Corners& X,
+                                                  topology::Diagonals diagonals = {});
 
     /// Returns the precomputed values of a cell.
     /// @param X      corners at rest, m
     /// @param fibre  direction of the fibres at rest, of unit length; ignored by a law without
     ///               fibres
     /// @param part_shares  of each tetrahedron, how much of it is material; empty: all of it
+    /// @param diagonals    that divide its quadrilaterals
     /// @pre  why_no_cell() returns nothing; not all shares are zero
     Element precompute(const Corners& X, const Vec3& fibre = Vec3::Zero(),
-                       std::span<const double> part_shares = {}) const;
+                       std::span<const double> part_shares = {},
+                       topology::Diagonals diagonals = {}) const;
 
     /// Returns for each corner which part of the mass of the cell it has; they sum to 1. A quarter
     /// of the mass of a tetrahedron is at each of its points. That of a centre goes to the corners

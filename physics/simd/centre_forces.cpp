@@ -11,9 +11,11 @@ namespace {
 using topology::CellKind;
 
 /// Adds what acts on the centres to the corners.
+/// @param weights  of the group; null: those of faces that are not divided
 template <CellKind kind>
 [[gnu::always_inline]] inline void hand_on(
-    std::array<CellVectors, CentreDivision<kind>::num_points>& f) {
+    std::array<CellVectors, CentreDivision<kind>::num_points>& f,
+    const CentreWeights<kind>* weights, std::size_t first) {
     using Division = CentreDivision<kind>;
     const CellVectors of_centre =
         CellNumbers(1.0 / static_cast<double>(Division::num_corners)) * f[Division::num_points - 1];
@@ -22,9 +24,18 @@ template <CellKind kind>
     for (int i = 0; i < Division::traits.num_faces; ++i) {
         const auto face = Division::traits.face(i);
         if (face.size() != 4) continue;
-        const CellVectors of_corner = CellNumbers(0.25) * f[next++];
-        for (const int k : face)
-            f[static_cast<std::size_t>(k)] = f[static_cast<std::size_t>(k)] + of_corner;
+        CellNumbers even = 0.25, odd = 0.25;
+        if (weights) {
+            const auto& of_face = weights->faces[next - Division::num_corners];
+            even = CellNumbers::load(of_face.even + first);
+            odd = CellNumbers::load(of_face.odd + first);
+        }
+        const CellVectors of_even = even * f[next], of_odd = odd * f[next];
+        ++next;
+        for (std::size_t p = 0; p < 4; ++p) {
+            CellVectors& of_corner = f[static_cast<std::size_t>(face[p])];
+            of_corner = of_corner + (p % 2 == 0 ? of_even : of_odd);
+        }
     }
 }
 
@@ -32,11 +43,12 @@ template <CellKind kind>
 // f on scaled edges v, the work of the scale is f . v per ln s: it acts on the two volume ratios.
 template <CellKind kind, class Law>
 void add_forces_of(const Law& law, double J0, const CentreGroup<kind>& group,
-                   const CentreFibres<kind>* fibres, const CentreShares<kind>* shares,
-                   std::size_t first, const LocalVector* positions, LocalVector* forces) {
+                   const CentreExtras<kind>& extras, std::size_t first,
+                   const LocalVector* positions, LocalVector* forces) {
     using Division = CentreDivision<kind>;
     constexpr auto& parts = CellLanes<kind>::parts;
-    const CellLanes<kind> cells(group, shares, first, positions);
+    const auto [fibres, shares, weights] = extras;
+    const CellLanes<kind> cells(group, extras, first, positions);
     const Growth of_mean(cells.mean, J0);
     std::array<CellVectors, Division::num_points> f;
     f.fill({0.0, 0.0, 0.0});
@@ -73,7 +85,7 @@ void add_forces_of(const Law& law, double J0, const CentreGroup<kind>& group,
             works[t] * CellNumbers::load(group.parts[t].per_six_volumes + first) * (1.0 / 3.0);
         add(t, {along * cross(v[1], v[2]), along * cross(v[2], v[0]), along * cross(v[0], v[1])});
     }
-    hand_on<kind>(f);
+    hand_on<kind>(f, weights, first);
     std::array<CellVectors, Division::num_corners - 1> others;
     std::copy(f.begin() + 1, f.begin() + Division::num_corners, others.begin());
     scatter_add<double>(others, forces, group.offsets, first);
@@ -81,15 +93,14 @@ void add_forces_of(const Law& law, double J0, const CentreGroup<kind>& group,
 
 template <CellKind kind>
 void add_forces(const Law& law, double J0, std::span<const CentreGroup<kind>> groups,
-                const CentreFibres<kind>* fibres, const CentreShares<kind>* shares,
-                const LocalVector* positions, LocalVector* forces) {
+                const CentreExtras<kind>& extras, const LocalVector* positions,
+                LocalVector* forces) {
     std::visit(
         [&](const auto& l) {
             for (std::size_t g = 0; g < groups.size(); ++g)
                 for (std::size_t first = 0; first < CentreGroup<kind>::size;
                      first += num_lanes<double>)
-                    add_forces_of<kind>(l, J0, groups[g], fibres ? fibres + g : nullptr,
-                                        shares ? shares + g : nullptr, first, positions, forces);
+                    add_forces_of<kind>(l, J0, groups[g], extras.of(g), first, positions, forces);
         },
         law);
 }
@@ -98,26 +109,23 @@ void add_forces(const Law& law, double J0, std::span<const CentreGroup<kind>> gr
 
 void add_centre_forces(const Law& law, double J0,
                        std::span<const CentreGroup<CellKind::hexahedron>> groups,
-                       const CentreFibres<CellKind::hexahedron>* fibres,
-                       const CentreShares<CellKind::hexahedron>* shares,
+                       const CentreExtras<CellKind::hexahedron>& extras,
                        const LocalVector* positions, LocalVector* forces) {
-    add_forces(law, J0, groups, fibres, shares, positions, forces);
+    add_forces(law, J0, groups, extras, positions, forces);
 }
 
 void add_centre_forces(const Law& law, double J0,
                        std::span<const CentreGroup<CellKind::wedge>> groups,
-                       const CentreFibres<CellKind::wedge>* fibres,
-                       const CentreShares<CellKind::wedge>* shares, const LocalVector* positions,
+                       const CentreExtras<CellKind::wedge>& extras, const LocalVector* positions,
                        LocalVector* forces) {
-    add_forces(law, J0, groups, fibres, shares, positions, forces);
+    add_forces(law, J0, groups, extras, positions, forces);
 }
 
 void add_centre_forces(const Law& law, double J0,
                        std::span<const CentreGroup<CellKind::pyramid>> groups,
-                       const CentreFibres<CellKind::pyramid>* fibres,
-                       const CentreShares<CellKind::pyramid>* shares, const LocalVector* positions,
+                       const CentreExtras<CellKind::pyramid>& extras, const LocalVector* positions,
                        LocalVector* forces) {
-    add_forces(law, J0, groups, fibres, shares, positions, forces);
+    add_forces(law, J0, groups, extras, positions, forces);
 }
 
 }  // namespace incise::physics::INCISE_PROCESSOR

@@ -14,9 +14,11 @@ using CellNumbers = Lanes<double>;
 using CellVectors = Lanes3<double>;
 
 /// Returns all points of cells, from their corners relative to any origin.
+/// @param weights  of the group; null: those of faces that are not divided
 template <topology::CellKind kind>
 [[gnu::always_inline]] inline void set_centres(
-    std::array<CellVectors, CentreDivision<kind>::num_points>& points) {
+    std::array<CellVectors, CentreDivision<kind>::num_points>& points,
+    const CentreWeights<kind>* weights, std::size_t first) {
     using Division = CentreDivision<kind>;
     CellVectors sum = points[0];
     for (std::size_t k = 1; k < Division::num_corners; ++k) sum = sum + points[k];
@@ -25,7 +27,13 @@ template <topology::CellKind kind>
         const auto face = Division::traits.face(f);
         if (face.size() != 4) continue;
         const auto at = [&](std::size_t p) { return points[static_cast<std::size_t>(face[p])]; };
-        points[next++] = CellNumbers(0.25) * (at(0) + at(1) + at(2) + at(3));
+        if (weights) {
+            const auto& of_face = weights->faces[next - Division::num_corners];
+            points[next++] = CellNumbers::load(of_face.even + first) * (at(0) + at(2)) +
+                             CellNumbers::load(of_face.odd + first) * (at(1) + at(3));
+        } else {
+            points[next++] = CellNumbers(0.25) * (at(0) + at(1) + at(2) + at(3));
+        }
     }
     points[next] = CellNumbers(1.0 / static_cast<double>(Division::num_corners)) * sum;
 }
@@ -53,13 +61,13 @@ struct CellLanes {
     CellNumbers mean = 0.0;
 
     [[gnu::always_inline]] inline CellLanes(const CentreGroup<kind>& group,
-                                            const CentreShares<kind>* of_group,
+                                            const CentreExtras<kind>& of_group,
                                             std::size_t first_lane, const LocalVector* positions)
-        : shares(of_group), first(first_lane) {
+        : shares(of_group.shares), first(first_lane) {
         x[0] = {0.0, 0.0, 0.0};
         const auto corners = gather_edges<double>(positions, group.offsets, first);
         std::copy(corners.begin(), corners.end(), x.begin() + 1);
-        set_centres<kind>(x);
+        set_centres<kind>(x, of_group.weights, first);
         const CellNumbers per_volume = CellNumbers::load(group.per_volume + first);
         for (std::size_t t = 0; t < Division::num_parts; ++t) {
             const auto v = edges(t);

@@ -42,12 +42,13 @@ using topology::CellKind;
 
 template <CellKind kind, class Law>
 void set_stiffening(const Law& law, double J0, std::span<const CentreGroup<kind>> groups,
-                    const CentreFibres<kind>* fibres, const CentreShares<kind>* shares,
-                    const LocalVector* positions, ElementFactors<double>* factors) {
+                    const CentreExtras<kind>& extras, const LocalVector* positions,
+                    ElementFactors<double>* factors) {
     constexpr double rounding = std::numeric_limits<double>::epsilon();
     for (std::size_t g = 0; g < groups.size(); ++g)
         for (std::size_t first = 0; first < CentreGroup<kind>::size; first += num_lanes<double>) {
-            const CellLanes<kind> cells(groups[g], shares ? shares + g : nullptr, first, positions);
+            const CentreExtras<kind> of_group = extras.of(g);
+            const CellLanes<kind> cells(groups[g], of_group, first, positions);
             const Growth of_mean(cells.mean, J0);
             CellNumbers largest = 0.0;
             for (std::size_t t = 0; t < CentreDivision<kind>::num_parts; ++t) {
@@ -55,7 +56,7 @@ void set_stiffening(const Law& law, double J0, std::span<const CentreGroup<kind>
                     exp((of_mean.logarithm - Growth(cells.ratios[t], J0).logarithm) * (1.0 / 3.0));
                 const auto has_material = is_less(CellNumbers(0.0), cells.share(t));
                 auto v = cells.edges(t);
-                const auto* const of_part = fibres ? &fibres[g].parts[t] : nullptr;
+                const auto* const of_part = of_group.fibres ? &of_group.fibres->parts[t] : nullptr;
                 for (const bool is_scaled : {false, true}) {
                     if (is_scaled)
                         for (CellVectors& edge : v) edge = s * edge;
@@ -72,32 +73,26 @@ void set_stiffening(const Law& law, double J0, std::span<const CentreGroup<kind>
 
 void centre_stiffening(const Law& law, double J0,
                        std::span<const CentreGroup<CellKind::hexahedron>> groups,
-                       const CentreFibres<CellKind::hexahedron>* fibres,
-                       const CentreShares<CellKind::hexahedron>* shares,
+                       const CentreExtras<CellKind::hexahedron>& extras,
                        const LocalVector* positions, ElementFactors<double>* factors) {
-    std::visit(
-        [&](const auto& l) { set_stiffening(l, J0, groups, fibres, shares, positions, factors); },
-        law);
+    std::visit([&](const auto& l) { set_stiffening(l, J0, groups, extras, positions, factors); },
+               law);
 }
 
 void centre_stiffening(const Law& law, double J0,
                        std::span<const CentreGroup<CellKind::wedge>> groups,
-                       const CentreFibres<CellKind::wedge>* fibres,
-                       const CentreShares<CellKind::wedge>* shares, const LocalVector* positions,
+                       const CentreExtras<CellKind::wedge>& extras, const LocalVector* positions,
                        ElementFactors<double>* factors) {
-    std::visit(
-        [&](const auto& l) { set_stiffening(l, J0, groups, fibres, shares, positions, factors); },
-        law);
+    std::visit([&](const auto& l) { set_stiffening(l, J0, groups, extras, positions, factors); },
+               law);
 }
 
 void centre_stiffening(const Law& law, double J0,
                        std::span<const CentreGroup<CellKind::pyramid>> groups,
-                       const CentreFibres<CellKind::pyramid>* fibres,
-                       const CentreShares<CellKind::pyramid>* shares, const LocalVector* positions,
+                       const CentreExtras<CellKind::pyramid>& extras, const LocalVector* positions,
                        ElementFactors<double>* factors) {
-    std::visit(
-        [&](const auto& l) { set_stiffening(l, J0, groups, fibres, shares, positions, factors); },
-        law);
+    std::visit([&](const auto& l) { set_stiffening(l, J0, groups, extras, positions, factors); },
+               law);
 }
 
 }  // namespace incise::physics::INCISE_PROCESSOR

@@ -279,21 +279,33 @@ TEST_F(FaultyMesh, HasCellsTooDistortedForForces) {
     EXPECT_EQ(run("convert hex.msh hex.vtu").status, 0);  // which needs no forces
 }
 
-TEST_F(FaultyMesh, JoinsQuadrilateralsAndTrianglesByPyramids) {
-    // A cube, and two tetrahedra on its top.
-    write("mixed.vtk",
-          "# vtk DataFile Version 3.0\nmixed\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n"
-          "0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1  0.5 0.5 2\n"
-          "CELLS 3 19\n8 0 1 2 3 4 5 6 7\n4 4 5 6 8\n4 4 6 7 8\nCELL_TYPES 3\n12\n10\n10\n");
+TEST_F(FaultyMesh, TellsWhichQuadrilateralsAreJoinedToTriangles) {
+    // A cube, and tetrahedra on its top.
+    const std::string cube =
+        "# vtk DataFile Version 3.0\nmixed\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n"
+        "0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1  0.5 0.5 2\n";
+    write("mixed.vtk", cube +
+                           "CELLS 3 19\n8 0 1 2 3 4 5 6 7\n4 4 5 6 8\n4 4 6 7 8\nCELL_TYPES "
+                           "3\n12\n10\n10\n");
     const auto outcome = run("check mixed.vtk");
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(count_of(outcome.err,
-                       "mixed.vtk: the quadrilateral of cell 0 (hexahedron) and the triangles of "
-                       "cell 1 (tetrahedron) and cell 2 (tetrahedron) on it are no common face, so "
-                       "these cells are not joined: put a layer of pyramids between them, each "
-                       "with its base on such a quadrilateral\n"),
+    EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+    const std::string line = "joined 1 quadrilateral of hexahedra to two triangles of tetrahedra\n";
+    EXPECT_TRUE(outcome.out.ends_with("mixed.vtk: " + line)) << outcome.out;
+    EXPECT_NE(run("info mixed.vtk").out.find("\n" + line), std::string::npos);
+    write("mixed.toml", "[mesh]\nfile = \"mixed.vtk\"\n" + rest_of_scenario);
+    EXPECT_NE(run("check mixed.toml").out.find("mixed.toml: " + line), std::string::npos);
+
+    write("half.vtk", cube + "CELLS 2 14\n8 0 1 2 3 4 5 6 7\n4 4 5 6 8\nCELL_TYPES 2\n12\n10\n");
+    const auto half = run("check half.vtk");
+    EXPECT_EQ(half.status, 0) << half.err;
+    EXPECT_EQ(count_of(half.err,
+                       "half.vtk: the quadrilateral of cell 0 (hexahedron) and the triangle of "
+                       "cell 1 (tetrahedron) on it are no common face, so these cells are not "
+                       "joined: let two triangles, which share one of its diagonals, cover each "
+                       "such quadrilateral\n"),
               1u)
-        << outcome.err;
+        << half.err;
 }
 
 TEST_F(FaultyMesh, IsNoIndexOfFrames) {

@@ -174,7 +174,8 @@ TEST(WayInside, GoesThroughHexahedra) {
 // middle of its cell stays in it, whatever the faces look like.
 TEST(WayInside, LeadsToTheMiddleOfCellsBesideACut) {
     using test::Bricks;
-    for (const auto bricks : {Bricks::hexahedra, Bricks::wedges, Bricks::pyramids, Bricks::mixed})
+    for (const auto bricks :
+         {Bricks::hexahedra, Bricks::wedges, Bricks::pyramids, Bricks::mixed, Bricks::joined})
         for (std::uint64_t seed = 0; seed < test::num_cases(10); ++seed) {
             test::Random random(seed);
             Mesh mesh = Mesh::build(test::brick_cube(bricks, 3, 0.0, 1)).mesh;

@@ -200,7 +200,8 @@ std::vector<Cube> cubes(int n) {
         all.push_back({"tetrahedra" + text, test::jittered_cube(n, jitter, 3)});
         for (const auto& [name, bricks] :
              {std::pair("hexahedra", Bricks::hexahedra), std::pair("wedges", Bricks::wedges),
-              std::pair("pyramids", Bricks::pyramids), std::pair("mixed", Bricks::mixed)})
+              std::pair("pyramids", Bricks::pyramids), std::pair("mixed", Bricks::mixed),
+              std::pair("joined", Bricks::joined)})
             all.push_back({name + text, test::brick_cube(bricks, n, jitter, 3)});
     }
     return all;

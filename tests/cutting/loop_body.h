@@ -51,6 +51,9 @@ inline const Kind kinds[] = {
     {"mixed", plain<Bricks::mixed>},
     {"jittered hexahedra", jittered<Bricks::hexahedra>},
     {"jittered mixed", jittered<Bricks::mixed>},
+    {"joined",
+     [](int n, std::uint64_t seed) { return test::brick_cube(Bricks::joined, n, 0.0, seed); }},
+    {"jittered joined", jittered<Bricks::joined>},
     {"tetrahedra",
      [](int n, std::uint64_t) {
          return topology::box_mesh(CellKind::tetrahedron, Vec3::Zero(), Vec3::Ones(), {n, n, n});
@@ -239,10 +242,13 @@ inline std::vector<Divider> lattice_planes(Random& random, std::size_t count) {
     }
 }
 
-/// @param with_tetrahedra  also those of tetrahedra only, which a cutter divides otherwise
+/// All but those of tetrahedra only, which a cutter divides otherwise.
+inline constexpr std::size_t num_kinds_of_loops = std::size(kinds) - 2;
+
+/// @param num_kinds  the first of the kinds
 template <class Check>
-void for_bodies(int num_seeds, int n, Check check, bool with_tetrahedra = true) {
-    for (const Kind& kind : std::span(kinds).first(with_tetrahedra ? std::size(kinds) : 6))
+void for_bodies(int num_seeds, int n, Check check, std::size_t num_kinds = std::size(kinds)) {
+    for (const Kind& kind : std::span(kinds).first(num_kinds))
         for (int seed = 0; seed < test::num_cases(num_seeds); ++seed) {
             SCOPED_TRACE(std::string(kind.name) + " " + std::to_string(seed));
             Random random(static_cast<std::uint64_t>(seed));

@@ -152,6 +152,8 @@ const Programs all_programs[] = {{"cube of hexahedra", cube<Bricks::hexahedra, 0
                                  {"mixed cube", cube<Bricks::mixed, 0>, 30},
                                  {"jittered cube of hexahedra", cube<Bricks::hexahedra, 15>, 40},
                                  {"jittered mixed cube", cube<Bricks::mixed, 15>, 30},
+                                 {"joined cube", cube<Bricks::joined, 0>, 30},
+                                 {"jittered joined cube", cube<Bricks::joined, 8>, 30},
                                  {"hexahedra", of_family<0>, 15},
                                  {"voxels", of_family<1>, 15},
                                  {"mixed", of_family<2>, 60}};

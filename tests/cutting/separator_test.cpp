@@ -67,7 +67,8 @@ TEST(Separator, ASweepRightThroughPartsAlongThePlane) {
 TEST(Separator, ASweepPartsWhatWasSplitBefore) {
     using test::Bricks;
     int most_corners = 0;
-    for (const auto bricks : {Bricks::hexahedra, Bricks::wedges, Bricks::pyramids, Bricks::mixed})
+    for (const auto bricks :
+         {Bricks::hexahedra, Bricks::wedges, Bricks::pyramids, Bricks::mixed, Bricks::joined})
         for (std::uint64_t seed = 0; seed < test::num_cases(8); ++seed) {
             SCOPED_TRACE(testing::Message()
                          << "bricks " << static_cast<int>(bricks) << ", seed " << seed);

@@ -30,8 +30,10 @@ std::size_t num_carried_away(const Mesh& material, const FragmentMesh& fragments
     return count;
 }
 
-std::size_t num_faces_closed_by_file(const Mesh& material) {
-    const Mesh read = Mesh::build(to_mesh_data(material, material.rest_positions())).mesh;
+std::size_t num_faces_closed_by_file(const Mesh& material, const FragmentMesh& fragments) {
+    MeshData data = to_mesh_data(material, material.rest_positions());
+    if (!data.faces.empty()) data.carriers = carriers_of(material, fragments);
+    const Mesh read = Mesh::build(data).mesh;
     return boundary_faces(material).size() - boundary_faces(read).size();
 }
 
@@ -41,6 +43,8 @@ TEST(Carriers, AreLeftOutOfABodyWithoutDivisions) {
         Mesh material = Mesh::build(family.data).mesh;
         FragmentMesh fragments(material);
         EXPECT_TRUE(carriers_of(material, fragments).is_empty());
+        if (family.name == "joined")
+            continue;  // opened at one triangle, it is a polyhedron in files
         MeshEdit edit(material);
         for (const FaceId f : test::inner_faces(material))
             if (f.cell.index() % 3 == 0 && material.neighbor(f).is_valid()) edit.open(f);
@@ -80,7 +84,8 @@ TEST(Carriers, GiveTheFragmentsOfAnyEditsAgain) {
             for (int i = 0; i < 8; ++i) {
                 fragments.apply(material, test::random_edit(material, random));
                 // A face that is open while both its sides have the same nodes is closed in a file.
-                if (material.num_elements() == 0 || num_faces_closed_by_file(material) > 0)
+                if (material.num_elements() == 0 ||
+                    num_faces_closed_by_file(material, fragments) > 0)
                     continue;
                 expect_round_trip(material, fragments);
                 ++num_cases;

@@ -44,7 +44,8 @@ TEST(CellWeights, ReproduceThePointAndSumToOne) {
     test::for_each_random_cell(20, [](auto kind, const auto& corners, test::Random& random) {
         const double size = (corners[1] - corners[0]).norm();
         constexpr auto parts = CentreDivision<kind()>::parts();
-        const auto at = CentreDivision<kind()>::points(corners);
+        const auto diagonals = test::random_diagonals(kind(), random);
+        const auto at = CentreDivision<kind()>::points(corners, diagonals);
         for (int i = 0; i < 20; ++i) {
             const bool is_outside = i % 4 == 3;
             const auto& p = parts[random.below(parts.size())];
@@ -53,7 +54,7 @@ TEST(CellWeights, ReproduceThePointAndSumToOne) {
                     ? Vec3(corners[0] + random.vector(2.0 * size))
                     : point_between(std::array<Vec3, 4>{at[p[0]], at[p[1]], at[p[2]], at[p[3]]},
                                     random);
-            const auto weights = weights_in_cell(kind(), corners, x);
+            const auto weights = weights_in_cell(kind(), corners, x, diagonals);
             EXPECT_NEAR(sum_of(weights), 1.0, is_outside ? 1e-13 : 1e-15);
             EXPECT_LE((position(weights, corners) - x).norm(), (is_outside ? 1e-13 : 1e-14) * size);
             for (std::size_t k = corners.size(); k < weights.size(); ++k)
@@ -71,7 +72,9 @@ TEST(CellWeights, AreLinearInEachTetrahedron) {
         using Division = CentreDivision<kind()>;
         auto moved = corners;
         for (Vec3& x : moved) x += random.vector(0.5);
-        const auto at = Division::points(corners), to = Division::points(moved);
+        const auto diagonals = test::random_diagonals(kind(), random);
+        const auto at = Division::points(corners, diagonals),
+                   to = Division::points(moved, diagonals);
         for (const auto& p : Division::parts()) {
             std::array<double, 4> b;
             for (double& weight : b) weight = random.uniform(0.01, 1.0);
@@ -81,9 +84,36 @@ TEST(CellWeights, AreLinearInEachTetrahedron) {
                 x += b[k] / sum * at[p[k]];
                 expected += b[k] / sum * to[p[k]];
             }
-            EXPECT_LE((position(weights_in_cell(kind(), corners, x), moved) - expected).norm(),
-                      1e-13);
+            EXPECT_LE(
+                (position(weights_in_cell(kind(), corners, x, diagonals), moved) - expected).norm(),
+                1e-13);
         }
+    });
+}
+
+// On a triangle they are those of its corners, as in a tetrahedron on the other side.
+TEST(CellWeights, AreLinearInEachHalfOfADividedFace) {
+    test::for_each_random_cell(20, [](auto kind, const auto& corners, test::Random& random) {
+        const topology::CellTraits& traits = topology::traits(kind());
+        const auto diagonals = test::random_diagonals(kind(), random);
+        for (int f = 0; f < traits.num_faces; ++f)
+            for (const int half : {0, 2}) {
+                if (!diagonals.divides(f)) continue;
+                std::array<double, 3> b{random.uniform(), random.uniform(), random.uniform()};
+                if (random.below(3) == 0) b[1] = 0.0;  // on the diagonal
+                const double sum = sum_of(b);
+                Vec3 x = Vec3::Zero();
+                std::array<double, topology::max_corners> expected{};
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const auto corner = static_cast<std::size_t>(traits.face(
+                        f)[(static_cast<std::size_t>(diagonals.first_end(f) + half) + k) % 4]);
+                    expected[corner] = b[k] / sum;
+                    x += expected[corner] * corners[corner];
+                }
+                const auto weights = weights_in_cell(kind(), corners, x, diagonals);
+                for (std::size_t k = 0; k < weights.size(); ++k)
+                    EXPECT_NEAR(weights[k], expected[k], expected[k] == 0.0 ? 0.0 : 1e-13);
+            }
     });
 }
 

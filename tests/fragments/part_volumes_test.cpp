@@ -22,25 +22,30 @@ double sum_of(const PartNumbers& fractions, const PartNumbers& volumes) {
 }
 
 TEST(PartVolumes, FillTheCell) {
-    test::for_each_random_cell(10, [](auto kind, const auto& corners, test::Random&) {
-        const PartNumbers volumes = part_volumes(kind(), corners);
+    test::for_each_random_cell(10, [](auto kind, const auto& corners, test::Random& random) {
+        const auto diagonals = test::random_diagonals(kind(), random);
+        const PartNumbers volumes = part_volumes(kind(), corners, diagonals);
         double sum = 0.0;
         for (std::size_t t = 0; t < max_parts; ++t) {
             EXPECT_EQ(volumes[t] > 0.0, t < num_parts(kind()));
             sum += volumes[t];
         }
-        EXPECT_NEAR(sum, topology::signed_volume(kind(), corners), 1e-14 * sum);
-        const PartNumbers of_whole =
-            part_fractions(kind(), corners, test::surface_of_cell<kind()>(corners));
+        const test::Surface surface = test::surface_of_cell<kind()>(corners, diagonals);
+        EXPECT_NEAR(sum,
+                    diagonals.is_none() ? topology::signed_volume(kind(), corners)
+                                        : test::volume_of(surface),
+                    1e-14 * sum);
+        const PartNumbers of_whole = part_fractions(kind(), corners, surface, diagonals);
         for (std::size_t t = 0; t < num_parts(kind()); ++t) EXPECT_EQ(of_whole[t], 1.0);
     });
 }
 
 TEST(PartVolumes, AddUpToThoseOfTheHalves) {
     test::for_each_random_cell(60, [](auto kind, const auto& corners, test::Random& random) {
-        const PartNumbers volumes = part_volumes(kind(), corners);
+        const auto diagonals = test::random_diagonals(kind(), random);
+        const PartNumbers volumes = part_volumes(kind(), corners, diagonals);
         const double whole = std::accumulate(volumes.begin(), volumes.end(), 0.0);
-        const Surface cell = test::surface_of_cell<kind()>(corners);
+        const Surface cell = test::surface_of_cell<kind()>(corners, diagonals);
         Vec3 point = Vec3::Zero();
         double weights = 0.0;
         for (const Vec3& x : corners) {
@@ -52,8 +57,8 @@ TEST(PartVolumes, AddUpToThoseOfTheHalves) {
         const Vec3 normal = random.vector(1.0).normalized();
         const Surface one = test::half_of(cell, point, normal),
                       other = test::half_of(cell, point, -normal);
-        const PartNumbers a = part_fractions(kind(), corners, one),
-                          b = part_fractions(kind(), corners, other);
+        const PartNumbers a = part_fractions(kind(), corners, one, diagonals),
+                          b = part_fractions(kind(), corners, other, diagonals);
         for (std::size_t t = 0; t < num_parts(kind()); ++t) {
             EXPECT_NEAR(a[t] + b[t], 1.0, 1e-13);
             EXPECT_GE(a[t], 0.0);
@@ -67,15 +72,16 @@ TEST(PartVolumes, AddUpToThoseOfTheHalves) {
 // Each tetrahedron of the division, clipped by the plane by itself, is the exact answer.
 TEST(PartVolumes, AreThoseOfEachTetrahedronClippedAlone) {
     test::for_each_random_cell(20, [](auto kind, const auto& corners, test::Random& random) {
-        const auto at = CentreDivision<kind()>::points(corners);
-        const Surface cell = test::surface_of_cell<kind()>(corners);
+        const auto diagonals = test::random_diagonals(kind(), random);
+        const auto at = CentreDivision<kind()>::points(corners, diagonals);
+        const Surface cell = test::surface_of_cell<kind()>(corners, diagonals);
         const bool is_through_centre = random.uniform() < 0.3;
         const Vec3 point = is_through_centre ? at.back() : Vec3(0.5 * (at[0] + at[2]));
         const Vec3 normal =
             random.uniform() < 0.3 ? Vec3(Vec3::UnitX()) : random.vector(1.0).normalized();
         const PartNumbers fractions =
-            part_fractions(kind(), corners, test::half_of(cell, point, normal));
-        const PartNumbers volumes = part_volumes(kind(), corners);
+            part_fractions(kind(), corners, test::half_of(cell, point, normal), diagonals);
+        const PartNumbers volumes = part_volumes(kind(), corners, diagonals);
         std::size_t t = 0;
         for (const auto& p : CentreDivision<kind()>::parts()) {
             const Surface part =

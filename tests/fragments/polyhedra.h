@@ -30,8 +30,9 @@ inline Surface surface_of_tetrahedron(const Vec3& a, const Vec3& b, const Vec3& 
 
 /// Returns the boundary of a cell; faces of four corners are divided about their centres.
 template <topology::CellKind kind>
-Surface surface_of_cell(const typename fragments::CentreDivision<kind>::Corners& corners) {
-    const auto at = fragments::CentreDivision<kind>::points(corners);
+Surface surface_of_cell(const typename fragments::CentreDivision<kind>::Corners& corners,
+                        topology::Diagonals diagonals = {}) {
+    const auto at = fragments::CentreDivision<kind>::points(corners, diagonals);
     Surface surface;
     for (const auto& p : fragments::CentreDivision<kind>::parts())
         surface.push_back({at[p[1]], at[p[2]], at[p[3]]});

@@ -26,6 +26,18 @@ typename fragments::CentreDivision<kind>::Corners unit_cell() {
         return {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0), Vec3(0.5, 0.5, 1)};
 }
 
+/// Diagonals of some quadrilaterals of a cell; none at all in half of the cases.
+inline topology::Diagonals random_diagonals(topology::CellKind kind, Random& random) {
+    topology::Diagonals diagonals;
+    if (random.below(2) == 0) return diagonals;
+    const topology::CellTraits& traits = topology::traits(kind);
+    for (int f = 0; f < traits.num_faces; ++f)
+        if (traits.face(f).size() == 4)
+            if (const std::size_t k = random.below(3); k < 2)
+                diagonals.divide(f, static_cast<int>(k));
+    return diagonals;
+}
+
 /// Calls check(kind, corners, random) for `count` cells of each kind, some of them not jittered.
 void for_each_random_cell(int count, auto check) {
     for (int seed = 0; seed < count; ++seed) {

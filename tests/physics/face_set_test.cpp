@@ -78,7 +78,8 @@ std::size_t num_bytes_of(const FaceSet& faces) {
 
 TEST(FaceSet, FollowsCellsOfAnyShapeAndGoesBackWithoutAHistory) {
     std::size_t num_grown = 0;
-    for (const auto bricks : {Bricks::hexahedra, Bricks::wedges, Bricks::pyramids, Bricks::mixed})
+    for (const auto bricks :
+         {Bricks::hexahedra, Bricks::wedges, Bricks::pyramids, Bricks::mixed, Bricks::joined})
         for (std::uint64_t seed = 0; seed < test::num_cases(20); ++seed) {
             SCOPED_TRACE(testing::Message()
                          << "bricks " << static_cast<int>(bricks) << ", seed " << seed);

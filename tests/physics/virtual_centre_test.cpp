@@ -80,9 +80,11 @@ TEST(VirtualCentre, HasTheForcesOfItsEnergyAndTheTangentOfItsForces) {
         test::Random random(1);
         for (int i = 0; i < 4; ++i) {
             const auto X = random_cell<kind()>(random);
-            ASSERT_FALSE(kernel.why_no_cell(X));
-            const auto e = i % 2 == 0 ? kernel.precompute(X, fibre)
-                                      : kernel.precompute(X, fibre, random_shares<kind()>(random));
+            const auto diagonals = test::random_diagonals(kind(), random);
+            ASSERT_FALSE(kernel.why_no_cell(X, diagonals));
+            const auto e =
+                i % 2 == 0 ? kernel.precompute(X, fibre, {}, diagonals)
+                           : kernel.precompute(X, fibre, random_shares<kind()>(random), diagonals);
             auto x = moved<kind()>(X, gentle_deformation(random, 0.15), 0.05, random);
             const auto f = kernel.forces(e, x);
             const auto K = kernel.tangent(e, x);
@@ -125,7 +127,8 @@ TEST(VirtualCentre, IsAtRestWithoutForcesAndTurnsWithoutStrain) {
     for_each_kernel_of_cells([](const auto& kernel, auto kind) {
         test::Random random(2);
         const auto X = random_cell<kind()>(random);
-        const auto e = kernel.precompute(X, fibre);
+        const auto diagonals = test::random_diagonals(kind(), random);
+        const auto e = kernel.precompute(X, fibre, {}, diagonals);
         for (const Vec3& f : kernel.forces(e, X))
             EXPECT_LE(f.norm(), 1e-14 * kernel.stiffness_energy(e) / (X[1] - X[0]).norm());
         EXPECT_EQ(kernel.energy(e, X), 0.0);
@@ -143,7 +146,8 @@ TEST(VirtualCentre, TellsThatACellIsFoldedInside) {
         test::Random random(7);
         for (int i = 0; i < 3; ++i) {
             const auto X = random_cell<kind()>(random);
-            const auto e = kernel.precompute(X, fibre);
+            const auto diagonals = test::random_diagonals(kind(), random);
+            const auto e = kernel.precompute(X, fibre, {}, diagonals);
             const Mat3 F = gentle_deformation(random, 0.3);
             auto x = moved<kind()>(X, F, 0.0, random);
             EXPECT_NEAR(kernel.least_volume_ratio(e, x), F.determinant(), 1e-12);
@@ -154,7 +158,7 @@ TEST(VirtualCentre, TellsThatACellIsFoldedInside) {
                 folded[c[0]] += 1.2 * ((x[c[1]] + x[c[2]] + x[c[3]]) / 3.0 - x[c[0]]);
                 const bool is_apex = kind() == CellKind::pyramid && c[0] == 4;
                 if (!is_apex) {  // the whole of a pyramid is inverted then
-                    EXPECT_GT(kernel.volume_ratio(e, folded), 0.1) << c[0];
+                    EXPECT_GT(kernel.volume_ratio(e, folded), 0.05) << c[0];
                 }
                 EXPECT_LT(kernel.least_volume_ratio(e, folded), 0.0) << c[0];
             }
@@ -168,7 +172,8 @@ TEST(VirtualCentre, HasTheEnergyOfHemlInAnAffineState) {
         const HemlKernel of_tetrahedra{kernel.law, 0.4};
         for (const double last : {1.1, 0.3, -0.4}) {  // also below the threshold, and inverted
             const auto X = random_cell<kind()>(random);
-            const auto e = kernel.precompute(X, fibre, random_shares<kind()>(random));
+            const auto diagonals = test::random_diagonals(kind(), random);
+            const auto e = kernel.precompute(X, fibre, random_shares<kind()>(random), diagonals);
             const Mat3 F = random_deformation(
                 random, {random.uniform(0.8, 1.2), random.uniform(0.8, 1.2), last});
             const Tetrahedron Y = random_tetrahedron(random);
@@ -186,7 +191,8 @@ TEST(VirtualCentre, KnowsItsTangentAtRest) {
     for_each_kernel_of_cells([](const auto& kernel, auto kind) {
         test::Random random(5);
         const auto X = random_cell<kind()>(random);
-        const auto e = kernel.precompute(X, fibre, random_shares<kind()>(random));
+        const auto diagonals = test::random_diagonals(kind(), random);
+        const auto e = kernel.precompute(X, fibre, random_shares<kind()>(random), diagonals);
         // At rest fibres are on the verge of being slack, where the tangent has two values.
         auto x = X;
         for (Vec3& corner : x) corner += 1e-9 * fibre.dot(corner) * fibre;
@@ -202,8 +208,10 @@ TEST(VirtualCentre, KeepsMomentaAndBoundsItsStiffness) {
         for (int i = 0; i < 60; ++i) {
             const double strain = 0.05 * (i % 6);
             const auto X = random_cell<kind()>(random);
-            const auto e = i % 12 < 6 ? kernel.precompute(X, fibre)
-                                      : kernel.precompute(X, fibre, random_shares<kind()>(random));
+            const auto diagonals = test::random_diagonals(kind(), random);
+            const auto e =
+                i % 12 < 6 ? kernel.precompute(X, fibre, {}, diagonals)
+                           : kernel.precompute(X, fibre, random_shares<kind()>(random), diagonals);
             const auto x =
                 moved<kind()>(X, gentle_deformation(random, strain), 0.3 * strain, random);
             Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
@@ -250,8 +258,10 @@ TEST(VirtualCentre, HasTheForcesOfTheReferenceOnLanesWithTheSameBitsOnEachProces
         double scale = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
             const auto X = random_cell<kind()>(random);
-            const auto e = i % 3 == 0 ? kernel.precompute(X, fibre)
-                                      : kernel.precompute(X, fibre, random_shares<kind()>(random));
+            const auto diagonals = test::random_diagonals(kind(), random);
+            const auto e =
+                i % 3 == 0 ? kernel.precompute(X, fibre, {}, diagonals)
+                           : kernel.precompute(X, fibre, random_shares<kind()>(random), diagonals);
             const double share = i % 3 == 2 ? 0.7 : 1.0;
             lanes.set(i, e, share);
             // Gentle, at rest, crushed below the threshold, and inverted.
@@ -274,11 +284,8 @@ TEST(VirtualCentre, HasTheForcesOfTheReferenceOnLanesWithTheSameBitsOnEachProces
         std::vector<LocalVector> first;
         for (const Processor processor : processors_at_hand()) {
             std::vector<LocalVector> forces(positions.size());
-            centre_forces_for<kind()>(processor)(
-                kernel.law, 0.4, lanes.groups(),
-                lanes.fibres().empty() ? nullptr : lanes.fibres().data(),
-                lanes.shares().empty() ? nullptr : lanes.shares().data(), positions.data(),
-                forces.data());
+            centre_forces_for<kind()>(processor)(kernel.law, 0.4, lanes.groups(), lanes.extras(),
+                                                 positions.data(), forces.data());
             for (std::size_t k = 0; k < num_corners * n; ++k)
                 EXPECT_LE((forces[k].vector() - expected[k].vector()).norm(), 1e-11 * scale);
             if (first.empty()) first = forces;
@@ -297,7 +304,8 @@ TEST(CentreViscous, IsTheViscosityOfHemlInEachTetrahedron) {
         CentreViscousKernel<kind()> kernel(elastic, prony);
         ViscousKernel of_tetrahedra(HemlKernel{elastic.law, 0.4}, prony);
         const auto X = random_cell<kind()>(random);
-        const auto e = kernel.precompute(X, fibre, random_shares<kind()>(random));
+        const auto diagonals = test::random_diagonals(kind(), random);
+        const auto e = kernel.precompute(X, fibre, random_shares<kind()>(random), diagonals);
         const Tetrahedron Y = random_tetrahedron(random);
         const auto t = of_tetrahedra.precompute(Y, fibre);
         std::vector<double> memory(kernel.history_size(2)),

@@ -201,6 +201,19 @@ class Arrays(unittest.TestCase):
         self.assertEqual({kind: rows.tolist() for kind, rows in body.physics.fragments.items()},
                          {"tetrahedron": [0], "hexahedron": [1]})
 
+    def test_cells_whose_quadrilaterals_meet_triangles_keep_their_kind(self) -> None:
+        points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1],
+                  [0, 1, 1], [0.5, 0.5, 2]]
+        mesh = incise.Mesh(points, {"hexahedron": [[0, 1, 2, 3, 4, 5, 6, 7]],
+                                    "tetrahedron": [[4, 5, 6, 8], [4, 6, 7, 8]]})
+        body = support.world(mesh=mesh, materials=[support.MATERIAL], constraints=[])
+        self.assertEqual(body.num_nodes, 9)
+        self.assertEqual({kind: len(rows) for kind, rows in body.cells.items()},
+                         {"tetrahedron": 2, "hexahedron": 1})
+        np.testing.assert_array_equal(body.rest_positions[body.cells["hexahedron"][0]], points[:8])
+        self.assertEqual({kind: rows.shape for kind, rows in body.stress.items()},
+                         {"tetrahedron": (2, 3, 3), "hexahedron": (1, 3, 3)})
+
     def test_triangles_face_outwards(self) -> None:
         body = support.world()
         corners = body.rest_positions[body.surface.triangles]

@@ -303,6 +303,34 @@ TEST(FrameOfACutBody, OfABodyWithoutDivisionsHasNoCarriers) {
     EXPECT_TRUE(build_frame(simulation.model(), 0.0, {}).mesh.carriers.is_empty());
 }
 
+// Quadrilaterals that meet triangles are divided in the mesh, and whole in files.
+TEST(FrameOfABody, HasTheCellsOfTheSourceThatReadingJoinsAgain) {
+    const RunFolder folder;
+    topology::MeshData data = test::brick_cube(test::Bricks::joined, 2, 0.1, 3);
+    data.scale(0.1);
+    io::Frame source;
+    source.mesh = data;
+    io::write_vtu(folder / "frame.vtu", source);
+    const std::string text = from_file(soft_cube);
+    Simulation written(folder.scenario(text + while_falling));
+    run(written);
+    ASSERT_EQ(topology::components(written.mesh()).count, 1);
+    const auto frame = build_frame(written.model(), written.time(), some_fields);
+    EXPECT_TRUE(frame.mesh.faces.empty());
+    for (std::size_t kind = 0; kind < topology::num_cell_kinds; ++kind)
+        EXPECT_EQ(std::ranges::count(frame.mesh.kinds, static_cast<topology::CellKind>(kind)),
+                  std::ranges::count(data.kinds, static_cast<topology::CellKind>(kind)));
+    io::write_vtu(folder / "frame.vtu", frame);
+    const Simulation read(folder.scenario(text + while_falling));
+    EXPECT_EQ(topology::components(read.mesh()).count, 1);
+    constexpr double rounding = 1e-12;
+    EXPECT_NEAR(read.model().structure().rest_stable_step(),
+                written.model().structure().rest_stable_step(),
+                rounding * written.model().structure().rest_stable_step());
+    EXPECT_NEAR(read.model().energetics().totals().mass, written.model().energetics().totals().mass,
+                rounding * written.model().energetics().totals().mass);
+}
+
 TEST(FrameOfACutBody, ForgedIsRefusedWithTheFileAndARemedy) {
     const RunFolder folder;
     Simulation written(folder.scenario(soft_cube + plane_cut + while_falling));

@@ -43,8 +43,24 @@ struct Tissue {
     MaterialTable table;
 };
 
+/// Boxes of hybrid springs, and cells of other kinds of the material of divided boxes.
+Tissue springs_beside_triangles(int n) {
+    Tissue tissue{"hybrid springs beside triangles", test::brick_cube(Bricks::joined, n, 0.0, 2),
+                  physics::table_of_one_material(HybridSprings{3e3, 1e4, infinite})};
+    for (std::size_t c = 0; c < tissue.data.num_cells(); ++c)
+        tissue.data.regions[c] = tissue.data.kinds[c] == topology::CellKind::hexahedron ? 0 : 1;
+    tissue.table.of_region[1] = 1;
+    tissue.table.materials.push_back(
+        {1000.0, links_of_divided_box(HybridSprings{3e3, 1e4, infinite})});
+    return tissue;
+}
+
 std::vector<Tissue> tissues(int n) {
-    return {{"jittered hexahedra", test::brick_cube(Bricks::hexahedra, n, 0.15, 3),
+    return {{"jittered cells, quadrilaterals of which meet triangles",
+             test::brick_cube(Bricks::joined, n, 0.08, 4),
+             physics::table_of_one_law(physics::soft_law)},
+            springs_beside_triangles(n),
+            {"jittered hexahedra", test::brick_cube(Bricks::hexahedra, n, 0.15, 3),
              physics::table_of_one_law(physics::soft_law)},
             {"jittered cells of all kinds", test::brick_cube(Bricks::mixed, n, 0.15, 4),
              physics::table_of_one_law(physics::soft_law)},
@@ -194,7 +210,8 @@ Tissue tissue_of_all_materials(Bricks bricks, double jitter) {
 TEST(CutCells, EqualFreshOnesAndArchivedOnesAndCanBeUndone) {
     for (const auto& [bricks, jitter] :
          {std::pair(Bricks::hexahedra, 0.0), std::pair(Bricks::hexahedra, 0.15),
-          std::pair(Bricks::mixed, 0.0), std::pair(Bricks::mixed, 0.15)})
+          std::pair(Bricks::mixed, 0.0), std::pair(Bricks::mixed, 0.15),
+          std::pair(Bricks::joined, 0.0), std::pair(Bricks::joined, 0.08)})
         for (std::uint64_t seed = 0; seed < test::num_cases(3); ++seed) {
             SCOPED_TRACE("jitter " + std::to_string(jitter) + ", seed " + std::to_string(seed));
             const Tissue tissue = tissue_of_all_materials(bricks, jitter);

@@ -112,6 +112,113 @@ bool is_among_tetrahedra(const Mesh& mesh, VertexId n) {
 
 }  // namespace
 
+namespace {
+
+using Row = std::vector<std::int64_t>;
+
+/// Divides bricks at random. Two triangles on one side of a face between bricks, and two on the
+/// other, share the same diagonal.
+class JoinedBricks {
+  public:
+    JoinedBricks(MeshData& data, std::uint64_t seed) : data_(data), random_(seed + 1) {}
+
+    /// @param p  the corners, as those of a hexahedron
+    void add(const Row& p) {
+        const std::size_t kind = random_.below(5);
+        if (kind == 0) return data_.add_cell(CellKind::hexahedron, p);
+        if (kind == 1 && add_wedges(p, random_.below(3))) return;
+        if (kind == 2 && add_kuhn(p)) return;
+        add_cone(p, kind == 3 ? 1.0 : 0.5);
+    }
+
+  private:
+    using Ends = std::pair<std::int64_t, std::int64_t>;
+
+    static Row face_of(const Row& p, int f) {
+        Row face;
+        for (const int c : traits(CellKind::hexahedron).face(f))
+            face.push_back(p[static_cast<std::size_t>(c)]);
+        return face;
+    }
+    static Row key(Row face) {
+        std::sort(face.begin(), face.end());
+        return face;
+    }
+
+    /// Sets the diagonals of faces, unless one of them has another one already.
+    bool set_diagonals(const std::vector<std::pair<Row, Ends>>& all) {
+        for (const auto& [face, ends] : all)
+            if (const auto it = diagonals_.find(key(face));
+                it != diagonals_.end() && it->second != Ends(std::minmax(ends.first, ends.second)))
+                return false;
+        for (const auto& [face, ends] : all)
+            diagonals_[key(face)] = Ends(std::minmax(ends.first, ends.second));
+        return true;
+    }
+    /// Returns the position in a face of one end of its diagonal, which is random if it is new.
+    std::size_t first_end(const Row& face) {
+        const std::size_t any = random_.below(2);
+        const auto it =
+            diagonals_.try_emplace(key(face), Ends(std::minmax(face[any], face[any + 2]))).first;
+        return face[0] == it->second.first || face[0] == it->second.second ? 0 : 1;
+    }
+
+    /// Adds two wedges whose triangles are on the faces across an axis.
+    bool add_wedges(const Row& p, std::size_t axis) {
+        constexpr std::array<std::array<std::size_t, 8>, 3> turned = {
+            {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 4, 5, 1, 3, 7, 6, 2}, {0, 3, 7, 4, 1, 2, 6, 5}}};
+        Row q;
+        for (const std::size_t k : turned[axis]) q.push_back(p[k]);
+        if (!set_diagonals({{{q[0], q[1], q[2], q[3]}, {q[0], q[2]}},
+                            {{q[4], q[5], q[6], q[7]}, {q[4], q[6]}}}))
+            return false;
+        data_.add_cell(CellKind::wedge, Row{q[0], q[2], q[1], q[4], q[6], q[5]});
+        data_.add_cell(CellKind::wedge, Row{q[0], q[3], q[2], q[4], q[7], q[6]});
+        return true;
+    }
+
+    /// Adds six tetrahedra about the diagonal from corner 0 to corner 6.
+    bool add_kuhn(const Row& p) {
+        std::vector<std::pair<Row, Ends>> all;
+        for (int f = 0; f < 6; ++f) {
+            const Row face = face_of(p, f);
+            const std::size_t first =
+                face[0] == p[0] || face[0] == p[6] || face[2] == p[0] || face[2] == p[6] ? 0 : 1;
+            all.emplace_back(face, Ends{face[first], face[first + 2]});
+        }
+        if (!set_diagonals(all)) return false;
+        for (const auto& [a, b] : {std::pair(1, 2), {2, 3}, {3, 7}, {7, 4}, {4, 5}, {5, 1}})
+            data_.add_cell(CellKind::tetrahedron, Row{p[0], p[static_cast<std::size_t>(a)],
+                                                      p[static_cast<std::size_t>(b)], p[6]});
+        return true;
+    }
+
+    /// Adds a pyramid or two tetrahedra on each face, with a point at the centre.
+    void add_cone(const Row& p, double share_of_tetrahedra) {
+        Vec3 centre = Vec3::Zero();
+        for (const std::int64_t at : p) centre += data_.points[static_cast<std::size_t>(at)] / 8.0;
+        data_.points.push_back(centre);
+        const std::int64_t apex = std::ssize(data_.points) - 1;
+        for (int f = 0; f < 6; ++f) {
+            const Row out = face_of(p, f), in{out.rbegin(), out.rend()};
+            if (random_.uniform() >= share_of_tetrahedra) {
+                data_.add_cell(CellKind::pyramid, Row{in[0], in[1], in[2], in[3], apex});
+                continue;
+            }
+            const std::size_t k = first_end(in);
+            for (const std::size_t first : {k, k + 2})
+                data_.add_cell(CellKind::tetrahedron,
+                               Row{in[first % 4], in[(first + 1) % 4], in[(first + 2) % 4], apex});
+        }
+    }
+
+    MeshData& data_;
+    Random random_;
+    std::map<Row, Ends> diagonals_;  // by the sorted corners of a face
+};
+
+}  // namespace
+
 MeshData brick_cube(Bricks bricks, int n, double jitter, std::uint64_t seed) {
     MeshData data;
     Random random(seed);
@@ -128,7 +235,7 @@ MeshData brick_cube(Bricks bricks, int n, double jitter, std::uint64_t seed) {
                         x[c] += shift;
                 data.points.push_back(x);
             }
-    using Row = std::vector<std::int64_t>;
+    JoinedBricks joined(data, seed);
     for (int k = 0; k < n; ++k)
         for (int j = 0; j < n; ++j)
             for (int i = 0; i < n; ++i) {
@@ -142,7 +249,9 @@ MeshData brick_cube(Bricks bricks, int n, double jitter, std::uint64_t seed) {
                             point(i, j + 1, k + 1)};
                 const bool is_mixed = bricks == Bricks::mixed;
                 // The same all along a column.
-                if (bricks == Bricks::wedges || (is_mixed && (i + 2 * j) % 3 == 0)) {
+                if (bricks == Bricks::joined) {
+                    joined.add(p);
+                } else if (bricks == Bricks::wedges || (is_mixed && (i + 2 * j) % 3 == 0)) {
                     data.add_cell(CellKind::wedge, Row{p[0], p[2], p[1], p[4], p[6], p[5]});
                     data.add_cell(CellKind::wedge, Row{p[0], p[3], p[2], p[4], p[7], p[6]});
                 } else if (bricks == Bricks::pyramids || (is_mixed && (i + j + k) % 2 == 0)) {
@@ -234,6 +343,7 @@ const std::vector<MeshFamily>& mesh_families() {
             {"hexahedra", box_mesh(CellKind::hexahedron, {-1, 0, 2}, {1, 1.25, 1.8}, {4, 4, 6})});
         all.push_back({"voxels", voxels()});
         all.push_back({"mixed", mixed()});
+        all.push_back({"joined", brick_cube(Bricks::joined, 2, 0.08, 3)});
         return all;
     }();
     return families;

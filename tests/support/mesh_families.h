@@ -20,7 +20,7 @@ struct MeshFamily {
 
 /// One tetrahedron; two by a face; two by an edge; a jittered Kuhn cube; a ring; a ball; an
 /// organ-like body; a block of boxes; cubes that fill a hollow ball; wedge, pyramid, hexahedron and
-/// tetrahedra glued together.
+/// tetrahedra glued together; bricks in which quadrilaterals meet triangles.
 const std::vector<MeshFamily>& mesh_families();
 
 /// The same cells, each with points of its own: points are numbered in the order of the corners.
@@ -34,8 +34,9 @@ std::vector<const MeshFamily*> tetrahedral_families();
 topology::MeshData jittered_cube(int n, double jitter, std::uint64_t seed);
 
 /// What the bricks of a cube consist of: hexahedra, two wedges or six pyramids each, or all of
-/// these, with whole columns of wedges.
-enum class Bricks { hexahedra, wedges, pyramids, mixed };
+/// these, with whole columns of wedges. Those that are joined are at random hexahedra, wedges,
+/// tetrahedra, or pyramids and tetrahedra: quadrilaterals meet two triangles, with any diagonal.
+enum class Bricks { hexahedra, wedges, pyramids, mixed, joined };
 /// The unit cube in n^3 bricks, inner points moved by up to `jitter` of an edge.
 topology::MeshData brick_cube(Bricks bricks, int n, double jitter, std::uint64_t seed);
 

@@ -53,10 +53,10 @@ class MakesTetrahedra : public InFolder {
         made.err = outcome.err;
         if (outcome.status != 0) return made;
         made.data = io::read_mesh(folder_ / "out.vtu").mesh;
-        const auto [mesh, warnings] = topology::Mesh::build(made.data);
-        EXPECT_THAT(warnings, testing::IsEmpty());
-        EXPECT_THAT(topology::validate(mesh), testing::IsEmpty());
-        made.num_components = topology::components(mesh).count;
+        const topology::BuiltMesh built = topology::Mesh::build(made.data);
+        EXPECT_THAT(built.warnings, testing::IsEmpty());
+        EXPECT_THAT(topology::validate(built.mesh), testing::IsEmpty());
+        made.num_components = topology::components(built.mesh).count;
         made.metrics = topology::measure(made.data);
         for (std::size_t c = 0; c < made.data.num_cells(); ++c) {
             std::array<Vec3, 4> x;

@@ -77,7 +77,7 @@ TEST(LinearCellComplex, IsValidAndComesBackAsTheSameBody) {
 
 TEST(LinearCellComplex, IsTheSameAfterCgalsOwnFile) {
     test::Random random(3);
-    for (const char* name : {"mixed", "jittered cube"}) {
+    for (const char* name : {"mixed", "joined", "jittered cube"}) {
         const auto& families = test::mesh_families();
         const auto family =
             std::ranges::find_if(families, [&](const auto& f) { return f.name == name; });

@@ -90,18 +90,44 @@ const std::string or_apart =
     ", or, if they are meant to be apart, as the faces of a cut are, set "
     "MeshData::points_may_coincide";
 
+TEST(Coincidence, OffersWeldingOfQuadrilateralsToTriangles) {
+    auto both = beside(brick_box(CellKind::hexahedron, {0, 0, 0}, 2),
+                       brick_box(CellKind::tetrahedron, {1, 0, 0}, 2));
+    EXPECT_TRUE(tail_of_warning(both).starts_with("join them with topology::weld(); if they "));
+    EXPECT_EQ(weld(both), 9u);
+    const auto built = Mesh::build(both);
+    EXPECT_EQ(components(built.mesh).count, 1);
+    EXPECT_EQ(built.warnings, std::vector<std::string>{});
+}
+
 TEST(Coincidence, OffersNoWeldingOfUnlikeFaces) {
-    const auto both = beside(brick_box(CellKind::hexahedron, {0, 0, 0}, 2),
-                             brick_box(CellKind::tetrahedron, {1, 0, 0}, 2));
-    const auto text = tail_of_warning(both);
+    // Of two tetrahedra on each quadrilateral, the first.
+    MeshData halves = brick_box(CellKind::tetrahedron, {1, 0, 0}, 2), some;
+    some.points = halves.points;
+    std::vector<bool> is_taken(2 * 2, false);
+    for (std::size_t c = 0; c < halves.num_cells(); ++c) {
+        Vec3 centre = Vec3::Zero();
+        int num_there = 0;
+        for (const std::int64_t p : halves.cell(c)) {
+            const Vec3& x = halves.points[static_cast<std::size_t>(p)];
+            if (x.x() == 1.0) ++num_there, centre += x / 3.0;
+        }
+        if (num_there != 3) continue;
+        const auto brick =
+            static_cast<std::size_t>(centre.y()) + 2 * static_cast<std::size_t>(centre.z());
+        if (!is_taken[brick]) some.add_cell(CellKind::tetrahedron, halves.cell(c));
+        is_taken[brick] = true;
+    }
+    ASSERT_EQ(some.num_cells(), 4u);
+    const auto text = tail_of_warning(beside(brick_box(CellKind::hexahedron, {0, 0, 0}, 2), some));
     EXPECT_TRUE(
         text.starts_with("welding does not join the cells, since no faces there have the "
                          "same corners, such as the quadrilateral of cell "))
         << text;
-    EXPECT_NE(text.find(" (hexahedron) and the triangles of cell "), std::string::npos) << text;
+    EXPECT_NE(text.find(" (hexahedron) and the triangle of cell "), std::string::npos) << text;
     EXPECT_TRUE(
-        text.ends_with(" (tetrahedron) on it: put a layer of pyramids between them, each "
-                       "with its base on such a quadrilateral" +
+        text.ends_with(" (tetrahedron) on it: let two triangles, which share one of its "
+                       "diagonals, cover each such quadrilateral" +
                        or_apart))
         << text;
 }
