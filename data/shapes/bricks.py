@@ -1,4 +1,4 @@
-# Bricks as tetrahedra, and meshes as Gmsh 2.2, for the scripts beside it.
+# Bricks as tetrahedra and other cells, and meshes as Gmsh 2.2, for the scripts beside it.
 # SPDX-License-Identifier: LGPL-3.0-or-later
 import itertools
 
@@ -21,14 +21,17 @@ def tetrahedra_of_brick(node, i, j, k):
     return tetrahedra
 
 
-def write_gmsh(points, tetrahedra):
-    """Prints a mesh. A tetrahedron is its region and its four points, numbered from 1."""
+GMSH_TYPES = {4: 4, 8: 5, 6: 6, 5: 7}  # tetrahedron, hexahedron, wedge, pyramid by number of corners
+
+
+def write_gmsh(points, cells):
+    """Prints a mesh. A cell is its region and its points, numbered from 1, in the order of Gmsh."""
     print("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes")
     print(len(points))
     for n, x in enumerate(points):
         print(n + 1, *(f"{c:.9g}" for c in x))
     print("$EndNodes\n$Elements")
-    print(len(tetrahedra))
-    for e, (region, corners) in enumerate(tetrahedra):
-        print(e + 1, 4, 2, region, region, *corners)
+    print(len(cells))
+    for e, (region, corners) in enumerate(cells):
+        print(e + 1, GMSH_TYPES[len(corners)], 2, region, region, *corners)
     print("$EndElements")
