@@ -261,8 +261,7 @@ void declare_cut(CLI::App& app, Action& action) {
                      "table")
         ->type_name("PATH");
     verb->add_option("--mode", options->mode,
-                     "split, or separate (default: split, unless the mesh has other cells than "
-                     "tetrahedra)")
+                     "split, which divides elements, or separate (default: split)")
         ->type_name("MODE");
     verb->add_option(
             "--snap", options->snap,
