@@ -49,8 +49,8 @@ double mean_carrier_volume(const Mesh& mesh) {
     double volume = 0.0;
     std::size_t count = 0;
     for (const CellId e : mesh.elements()) {
-        const std::int64_t row =
-            carriers.is_empty() ? topology::Carriers::whole : carriers.of_cell[e.index()];
+        const std::int64_t row = e.index() < carriers.of_cell.size() ? carriers.of_cell[e.index()]
+                                                                     : topology::Carriers::whole;
         if (row == topology::Carriers::whole) {
             volume += topology::rest_volume(mesh, e);
         } else {

@@ -102,8 +102,12 @@ void LoopStep::divide_warped_faces() {
             std::array<std::pair<VertexId, double>, 4> sources;
             for (int p = 0; p < 4; ++p)
                 sources[static_cast<std::size_t>(p)] = {mesh_.face_corner(face, p), 0.25};
+            const CellId other = mesh_.neighbor(face).cell;
+            const bool may_be_crossed =
+                !stays_whole(e) || (other.is_valid() && !stays_whole(other));
             const VertexId centre = edit_->divide_face_at_centre(face);
             place_new_node(centre, sources);
+            if (!may_be_crossed) continue;
             for (const auto& [corner, weight] : sources)
                 receive({corner, centre},
                         intersections_of(surface_, point(corner), point(centre), nearness));

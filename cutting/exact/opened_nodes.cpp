@@ -196,6 +196,10 @@ void OpenedNodes::find_all(const Mesh& mesh, double usual) {
 void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes) {
     std::ranges::sort(nodes);
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    if (unsettled_.size() > 2 * nodes_.size() + 1000) {  // while a blade rests in the body
+        std::ranges::sort(unsettled_);
+        unsettled_.erase(std::unique(unsettled_.begin(), unsettled_.end()), unsettled_.end());
+    }
     std::vector<CellId> star;
     for (const VertexId n : nodes) {
         Node node;
@@ -333,12 +337,19 @@ bool OpenedNodes::has_new() const {
 
 bool OpenedNodes::is_on(const Mesh& mesh) const {
     const auto is_there = [&](VertexId n) { return n.index() < mesh.node_capacity(); };
-    return std::ranges::all_of(nodes_, [&](const auto& entry) {
-        return is_there(entry.first) &&
-               std::ranges::all_of(entry.second.around, [&](const auto& neighbours) {
-                   return is_there(neighbours.first) && is_there(neighbours.second);
-               });
-    });
+    return std::ranges::all_of(unsettled_, is_there) &&
+           std::ranges::all_of(nodes_, [&](const auto& entry) {
+               const Node& node = entry.second;
+               return is_there(entry.first) && node.planes.size() <= max_planes &&
+                      std::ranges::all_of(node.around,
+                                          [&](const auto& neighbours) {
+                                              return is_there(neighbours.first) &&
+                                                     is_there(neighbours.second);
+                                          }) &&
+                      std::ranges::all_of(node.planes, [&](const Plane& plane) {
+                          return std::ranges::all_of(plane, is_there);
+                      });
+           });
 }
 
 }  // namespace incise::cutting

@@ -113,6 +113,10 @@ void keep_polyhedron(const VtkPiece& piece, std::size_t c, std::int64_t first_po
             refuse("face " + std::to_string(f) + " of " + std::to_string(num_faces) + " has " +
                    std::to_string(size) + " points");
         for (std::int64_t left = size; left > 0; --left, ++at) {
+            const std::int64_t most = std::ssize(mesh.points) - 1 - first_point;
+            if (list[at] < 0 || list[at] > most)
+                refuse("face " + std::to_string(f) + " names point " + std::to_string(list[at]) +
+                       " of " + std::to_string(most + 1));
             named.push_back(list[at]);
             list[at] += first_point;
         }

@@ -65,7 +65,7 @@ TEST(JoinedQuads, MakeOneBodyOfAllCells) {
         for (const CellId e : mesh.elements()) num_divided += mesh.is_polyhedron(e) ? 1 : 0;
         EXPECT_FALSE(joins.empty());
     });
-    EXPECT_GT(num_divided, 100u);
+    EXPECT_GT(num_divided, static_cast<std::size_t>(test::num_cases(100)));
 }
 
 // The kinds and the order of corners are those of the source, and cells of other kinds are as they
