@@ -138,7 +138,7 @@ TEST(Polyhedra, OfVtuFilesThatAreDamagedAreRefused) {
         {">4 3 0", ">3 3 0", "cell 0: a polyhedron has 17 numbers for its faces, which fill 13"},
         {">4 3 0", ">-4 3 0", "cell 0: a polyhedron has -4 faces"},
         {">4 3 0", ">4 2 0", "cell 0: face 0 of 4 has 2 points"},
-        {"0 3 2<", "0 3 7<", "cell 0: a polyhedron has other points than its faces"},
+        {"0 3 2<", "0 3 7<", "cell 0: face 3 names point 7 of 4"},
         {">0 1 2 3<", ">0 1 2 4<", "cell 0: node index 4 is out of range"},
         {">12<", ">42<", "carrier 0 has the type 42, which must be 10"},
         {">12<", ">11<", "carrier 0 has the type 11, which must be 10"},
