@@ -79,13 +79,19 @@ Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions, bool has_loops
     if (has_loops_) opened_.find_all(mesh, size);
 }
 
+bool Cutter::has_cut_in_progress() const {
+    return std::ranges::any_of(cuts_, [](const Cut& cut) { return !cut.loops.is_empty(); });
+}
+
+void Cutter::settle(const Mesh& mesh) {
+    if (!has_cut_in_progress()) opened_.settle(mesh, std::numeric_limits<std::size_t>::max());
+}
+
 void Cutter::follow_motion(const Mesh& mesh, std::span<const Vec3> positions) {
     std::swap(before_, now_);
     now_.assign(positions);
-    constexpr std::size_t most_at_a_time =
-        500;  // so that a step takes no longer than those that cut
-    if (std::ranges::all_of(cuts_, [](const Cut& cut) { return cut.loops.is_empty(); }))
-        opened_.settle(mesh, most_at_a_time);
+    constexpr std::size_t most_at_a_time = 500;  // a step takes no longer than one that cuts
+    if (!has_cut_in_progress()) opened_.settle(mesh, most_at_a_time);
     opened_.move_all(positions, now_);
     double largest = 0.0;
     for (std::size_t n = 0; n < positions.size(); ++n)

@@ -47,7 +47,7 @@ bool CellShape::is_sound() const {
     if (is_inside_.size() != ends_.size()) return false;
     std::int32_t begin = 0;
     for (const std::int32_t end : ends_) {
-        if (end < begin + 3) return false;
+        if (std::int64_t{end} < std::int64_t{begin} + 3) return false;
         begin = end;
     }
     return static_cast<std::size_t>(begin) == corners_.size();

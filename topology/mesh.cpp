@@ -312,7 +312,8 @@ MeshData to_mesh_data(const Mesh& mesh, std::span<const Vec3> positions,
         for (int f = 0; f < num_faces; ++f)
             if (mesh.is_on_cut({e, f})) data.set_on_cut(data.num_cells() - 1, f);
     }
-    if (!data.cut_faces.empty()) data.cut_faces.resize(data.num_cells());
+    if (!data.cut_faces.empty() || !data.further_cut_faces.empty())
+        data.cut_faces.resize(data.num_cells());
     for (auto& further : data.further_cut_faces) further.resize(data.num_cells());
     return data;
 }

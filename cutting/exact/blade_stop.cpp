@@ -135,7 +135,6 @@ std::unordered_set<CellId> cells_to_part(const BladeEnd& blade, const BladePlace
             std::vector<SectionPoint> section;
             for (const VertexId n : mesh.corners(e))
                 if (front.is_on(n)) section.push_back(in_section(positions[n.index()]));
-            if (section.empty()) continue;  // the cut has not come to this cell
             for (int f = 0; f < mesh.num_faces(e); ++f)
                 for (int p = 0; p < mesh.face_size({e, f}); ++p) {
                     const topology::Dart d{{e, f}, p};
@@ -145,6 +144,7 @@ std::unordered_set<CellId> cells_to_part(const BladeEnd& blade, const BladePlace
                          intersections_of(continuation, at(a), at(b), 0.0))
                         section.push_back(in_section(x.point));
                 }
+            if (section.size() < 3) continue;
             sort_round_middle(section);
             behind += area_ahead(section, -1.0);
             ahead += area_ahead(section, 1.0);

@@ -33,7 +33,7 @@ struct HalfSpace {
 
 /// Returns the shortest vector into all half spaces; zero if there is none within `most`.
 Vec3 shortest_into(std::span<const HalfSpace> spaces, double most) {
-    constexpr double rounding = 1e-9;  // of a margin
+    constexpr double rounding = 1e-9;  // of the longest vector, and of 1
     Vec3 best = Vec3::Zero();
     double least = std::numeric_limits<double>::infinity();
     const auto try_it = [&](const Vec3& d) {
@@ -249,9 +249,17 @@ void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
     std::ranges::sort(unsettled_);
     unsettled_.erase(std::unique(unsettled_.begin(), unsettled_.end()), unsettled_.end());
     const std::size_t begin = unsettled_.size() - std::min(most, unsettled_.size());
+    std::vector<VertexId> chosen(unsettled_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                 unsettled_.end());
+    unsettled_.resize(begin);
+    // A node that is settled may have planes whose corners an edit beside it has replaced.
+    for (const VertexId n : std::vector(chosen))
+        for (const VertexId other : near_to(mesh, n, 2.0 * margin_of(mesh, n, usual_)).nodes)
+            if (nodes_.contains(other)) chosen.push_back(other);
+    std::ranges::sort(chosen);
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     std::unordered_map<CellId, std::vector<Face>> faces_of;
-    for (std::size_t i = begin; i < unsettled_.size(); ++i) {
-        const VertexId n = unsettled_[i];
+    for (const VertexId n : chosen) {
         Node node;
         if (const auto before = nodes_.find(n); before != nodes_.end()) {
             node = std::move(before->second);
@@ -286,7 +294,6 @@ void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
         }
         if (!node.planes.empty() || !node.around.empty()) nodes_[n] = std::move(node);
     }
-    unsettled_.resize(begin);
 }
 
 /// Moves a node into the body by its margin.

@@ -170,7 +170,10 @@ class CountingCutter {
   private:
     /// Has the cutter move the nodes that were opened off their cut, as it does in each step of a
     /// run: else rounding would decide on which side of the same cut they are.
-    void keep_margins() { cutter_.follow_motion(mesh_, mesh_.rest_positions()); }
+    void keep_margins() {
+        cutter_.settle(mesh_);
+        cutter_.follow_motion(mesh_, mesh_.rest_positions());
+    }
 
     void cut(const PlaneCut& plane) {
         const Vec3 normal = well_scaled(plane.normal), unit = normal.normalized();

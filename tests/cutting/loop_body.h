@@ -18,6 +18,7 @@
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_edit.h"
 #include "incise/topology/validate.h"
+#include "split_body.h"
 #include "support/mesh_families.h"
 #include "support/mesh_snapshot.h"
 #include "support/num_cases.h"
@@ -154,13 +155,7 @@ class Body {
 
     Split cut(const CutSurface& surface, LoopFront& front, std::span<SuspendedLoops> resting = {}) {
         Split done = split_cells(mesh, {mesh, positions, positions}, surface, front, resting);
-        for (const auto& record : done.changes.nodes_added) {
-            Vec3 x = Vec3::Zero();
-            for (int k = 0; k < record.num_sources; ++k)
-                x += record.sources[static_cast<std::size_t>(k)].weight *
-                     positions[record.sources[static_cast<std::size_t>(k)].node.index()];
-            positions.push_back(x);
-        }
+        positions = followed(std::move(positions), done.changes);
         for (SuspendedLoops& blade : resting) blade.front.apply(mesh, done.changes);
         EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
         if (!done.changes.is_empty()) edits.push_back(done.changes);
@@ -278,13 +273,7 @@ class CutBody : public Body {
     explicit CutBody(const topology::MeshData& from) : Body(from), cutter(mesh, positions, true) {}
 
     Split follow(Split done) {
-        for (const auto& record : done.changes.nodes_added) {
-            Vec3 x = Vec3::Zero();
-            for (int k = 0; k < record.num_sources; ++k)
-                x += record.sources[static_cast<std::size_t>(k)].weight *
-                     positions[record.sources[static_cast<std::size_t>(k)].node.index()];
-            positions.push_back(x);
-        }
+        positions = followed(std::move(positions), done.changes);
         cutter.apply(mesh, done.changes);
         EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
         if (!done.changes.is_empty()) edits.push_back(done.changes);
