@@ -295,8 +295,14 @@ void declare_convert(CLI::App& app, Action& action) {
     declare_linear(verb, options->input.linear);
     verb->add_flag("--weld", options->input.weld,
                    "Join points at the same position, and check the mesh that this makes");
+    verb->add_option("--cells", options->cells,
+                     "tetrahedra: divide all other cells, with points inside, for programs that "
+                     "know no polyhedra (default: polyhedra, all cells as they are)")
+        ->type_name("KIND");
     verb->footer("Formats to write: " + written_formats() +
-                 "\nExample: incise convert liver.msh liver.vtu");
+                 "\nExamples:\n"
+                 "  incise convert liver.msh liver.vtu\n"
+                 "  incise convert cut_bricks.vtu cut_bricks.msh --cells tetrahedra");
     verb->callback([options, &action] { action = [options] { return convert(*options); }; });
 }
 

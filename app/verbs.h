@@ -78,6 +78,7 @@ int info(const InfoOptions& options);
 struct ConvertOptions {
     std::filesystem::path in, out;
     MeshInput input;
+    std::string cells;  ///< "tetrahedra" to divide all others; if empty or "polyhedra", none is
 };
 int convert(const ConvertOptions& options);
 

@@ -24,7 +24,7 @@ using ContactForces = std::vector<std::pair<VertexId, Vec3>>;
 /// in the source, and ids for nodes and elements that cuts have added. A frame of a divided body
 /// has the carriers at rest, so that it can be read back as that body. With Field::physics it has
 /// the arrays of physics::BodyArrays as field data, and the cell array fragment. With
-/// Field::tetrahedra its polyhedra are divided: see with_tetrahedra().
+/// Field::tetrahedra all cells are divided: see with_tetrahedra().
 ///
 /// The constructor copies the state of the model, which is fast. finish() then computes the fields
 /// of elements.

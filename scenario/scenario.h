@@ -171,7 +171,7 @@ struct ToolSpec {
 
 /// The fields that a frame can hold in addition to points, rest positions, ids and regions. The
 /// last two have keys of their own. They stand for the arrays of physics::BodyArrays, and for
-/// tetrahedra in place of polyhedra.
+/// tetrahedra in place of all other cells.
 enum class Field {
     displacement,
     velocity,

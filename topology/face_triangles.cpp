@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace incise::topology {
 
@@ -10,15 +11,26 @@ namespace {
 constexpr double rounding = 1e-10;  // of an area
 }
 
-Ears::Ears(const Mesh& mesh, FaceId f) {
-    for (int p = 0; p < mesh.face_size(f); ++p) {
-        corners_.push_back(mesh.face_corner(f, p));
-        x_.push_back(mesh.rest_position(corners_.back()));
-    }
+Ears::Ears(std::vector<VertexId> corners, std::vector<Vec3> positions)
+    : corners_(std::move(corners)), x_(std::move(positions)) {
     for (std::size_t p = 1; p + 1 < size(); ++p)
         normal_ += (x_[p] - x_[0]).cross(x_[p + 1] - x_[0]);
     normal_.normalize();
 }
+
+Ears::Ears(const Mesh& mesh, FaceId f)
+    : Ears(
+          [&] {
+              std::vector<VertexId> corners;
+              for (int p = 0; p < mesh.face_size(f); ++p) corners.push_back(mesh.face_corner(f, p));
+              return corners;
+          }(),
+          [&] {
+              std::vector<Vec3> x;
+              for (int p = 0; p < mesh.face_size(f); ++p)
+                  x.push_back(mesh.rest_position(mesh.face_corner(f, p)));
+              return x;
+          }()) {}
 
 void Ears::cut(std::size_t position) {
     corners_.erase(corners_.begin() + static_cast<std::ptrdiff_t>(position));

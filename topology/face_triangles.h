@@ -14,10 +14,12 @@
 namespace incise::topology {
 
 /// A polygon that is divided into triangles by cutting off one corner after the other: the one that
-/// gives the best triangle, as seen along the mean normal at rest.
+/// gives the best triangle, as seen along the mean normal. A face of a mesh is taken at rest.
 class Ears {
   public:
     Ears(const Mesh& mesh, FaceId f);
+    /// @param positions  of the corners, m
+    Ears(std::vector<VertexId> corners, std::vector<Vec3> positions);
 
     std::size_t size() const { return corners_.size(); }
     /// Returns a corner; positions count round the polygon.
@@ -51,7 +53,7 @@ class Ears {
     }
 
     std::vector<VertexId> corners_;
-    std::vector<Vec3> x_;  // at rest, m
+    std::vector<Vec3> x_;  // m
     Vec3 normal_ = Vec3::Zero();
 };
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -13,6 +12,7 @@
 #include "incise/topology/carrier_check.h"
 #include "incise/topology/cell_advice.h"
 #include "incise/topology/corner_check.h"
+#include "incise/topology/equal_faces.h"
 #include "incise/topology/flat_cell.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/joined_quads.h"
@@ -258,53 +258,6 @@ bool check_volume(const MeshData& data, std::size_t c, Complaints& complaints) {
     return false;
 }
 
-/// A face with its points in descending order, for the search of equal faces. Of a face with more
-/// corners the fourth number stands for all points but the highest three: see sorted_faces().
-struct FaceKey {
-    std::array<std::int64_t, 4> points{-1, -1, -1, -1};
-    SourceFace face;
-    auto operator<=>(const FaceKey&) const = default;
-};
-
-/// Returns all faces of usable cells, sorted so that faces with the same points follow each other.
-/// Faces with the same points are in the order of their cells.
-std::vector<FaceKey> sorted_faces(const MeshData& data, const SourceFaces& faces,
-                                  const std::vector<std::uint8_t>& usable) {
-    std::vector<FaceKey> keys;
-    keys.reserve(4 * data.num_cells());
-    std::map<std::vector<std::int64_t>, std::int64_t> numbers;  // of the other points, from -2 down
-    for (std::size_t c = 0; c < data.num_cells(); ++c) {
-        if (!usable[c]) continue;
-        for (int f = 0; f < faces.num_faces(c); ++f) {
-            FaceKey key;
-            key.face = {c, f};
-            if (const int size = faces.size({c, f}); size <= max_face_corners) {
-                for (int p = 0; p < size; ++p)
-                    key.points[static_cast<std::size_t>(p)] = faces.point({c, f}, p);
-                std::ranges::sort(key.points, std::greater{});
-            } else {
-                std::vector<std::int64_t> points = faces.points({c, f});
-                std::ranges::sort(points, std::greater{});
-                std::copy_n(points.begin(), 3, key.points.begin());
-                points.erase(points.begin(), points.begin() + 3);
-                key.points[3] =
-                    numbers.try_emplace(std::move(points), -2 - std::ssize(numbers)).first->second;
-            }
-            keys.push_back(key);
-        }
-    }
-    // A counting sort by the highest point leaves short buckets, which are fast to sort.
-    std::vector<std::size_t> begin(data.points.size() + 1, 0);
-    for (const FaceKey& key : keys) ++begin[static_cast<std::size_t>(key.points[0]) + 1];
-    for (std::size_t p = 0; p < data.points.size(); ++p) begin[p + 1] += begin[p];
-    std::vector<FaceKey> sorted(keys.size());
-    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
-    for (const FaceKey& key : keys) sorted[next[static_cast<std::size_t>(key.points[0])]++] = key;
-    for (std::size_t p = 0; p < data.points.size(); ++p)
-        std::ranges::sort(std::span(sorted).subspan(begin[p], begin[p + 1] - begin[p]));
-    return sorted;
-}
-
 /// Returns a text with number_of(face) for the first few faces and the number of the others.
 /// @pre  at least two faces
 template <class NumberOf>
@@ -414,30 +367,17 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
 
     std::vector<FaceKey> faces = sorted_faces(data, source_faces, usable);
     std::vector<SourceFace> boundary;
-    for (std::size_t i = 0; i < faces.size();) {
-        std::size_t end = i + 1;
-        while (end < faces.size() && faces[end].points == faces[i].points) ++end;
-        const auto same = std::span(faces).subspan(i, end - i);
-        // Faces on cuts stay open, as they do at the front of a cut, where both sides have the same
-        // points.
-        const auto rest = std::ranges::stable_partition(same, [&](const FaceKey& key) {
-            return !data.is_on_cut(key.face.cell, key.face.face);
-        });
-        const std::size_t num_others = rest.size(), num_inner = same.size() - num_others;
-        if (num_inner == 1 && num_others == 0) boundary.push_back(same[0].face);
-        const std::size_t num_joined = num_inner == 1 && num_others == 1 ? 2 : num_inner;
-        if (num_joined == 2) {
-            const SourceFace a = std::min(same[0].face, same[1].face),
-                             b = std::max(same[0].face, same[1].face);
+    for_each_equal_faces(data, faces, [&](const EqualFaces& same) {
+        if (same.is_lone()) boundary.push_back(same.inner[0].face);
+        if (same.num_meeting() == 2) {
+            const auto [a, b] = same.joined();
             check_pair(data, source_faces, a, b, sound[a.cell] && sound[b.cell], result, errors);
         }
-        if (num_joined > 2)
+        if (same.num_meeting() > 2)
             errors.add(
-                "faces shared by more than two cells", "cells ",
-                cell_numbers(data, same.first(num_inner)),
+                "faces shared by more than two cells", "cells ", cell_numbers(data, same.inner),
                 " all share one face; a face joins two cells at the most: remove the others");
-        i = end;
-    }
+    });
     std::sort(result.shared_faces.begin(), result.shared_faces.end(),
               [](const SharedFace& a, const SharedFace& b) { return a.a < b.a; });
     result.joined_quads = find_joined_quads(data, source_faces, boundary);

@@ -56,6 +56,21 @@ const WrittenFormat& written_format_of(const std::filesystem::path& path) {
     throw InputError(path.string() + ": " + what + "; use one of " + known);
 }
 
+/// Returns why a format has no place for the cells of a mesh; empty if it has.
+std::string fault_of_cells(const WrittenFormat& format, const topology::MeshData& mesh) {
+    const std::string remedy =
+        "; write .vtu, or tetrahedra: `incise convert IN OUT --cells tetrahedra` makes them";
+    for (std::size_t c = 0; c < mesh.num_cells(); ++c) {
+        if (!format.has_other_kinds && mesh.kinds[c] != topology::CellKind::tetrahedron)
+            return "the format holds tetrahedra alone, and " + mesh.cell_name(c) + " is none" +
+                   remedy;
+        if (!format.has_polyhedra && mesh.kinds[c] == topology::CellKind::polyhedron)
+            return "the format has no polyhedra, and " + mesh.cell_name(c) +
+                   " is one, which a cut has made" + remedy;
+    }
+    return {};
+}
+
 }  // namespace
 
 ReorderedCell with_wedges_facing_inwards(const topology::MeshData& mesh, std::size_t cell) {
@@ -78,20 +93,16 @@ void append_point(std::string& text, const Vec3& point, char separator) {
 
 void write_mesh(const std::filesystem::path& path, const topology::MeshData& mesh) {
     const auto& format = written_format_of(path);
-    for (std::size_t c = 0; c < mesh.num_cells() && !format.has_other_kinds; ++c)
-        if (mesh.kinds[c] != topology::CellKind::tetrahedron)
-            throw InputError(path.string() + ": the format holds tetrahedra alone, and " +
-                             mesh.cell_name(c) + " is none; write .vtu");
-    for (std::size_t c = 0; c < mesh.num_cells() && !format.has_polyhedra; ++c)
-        if (mesh.kinds[c] == topology::CellKind::polyhedron)
-            throw InputError(path.string() + ": the format has no polyhedra, and " +
-                             mesh.cell_name(c) + " is one, which a cut has made; write .vtu");
+    if (const std::string fault = fault_of_cells(format, mesh); !fault.empty())
+        throw InputError(path.string() + ": " + fault);
     write_file(path, format.text(mesh));
 }
 
 std::optional<std::string> loss_in_format(const std::filesystem::path& path,
                                           const topology::MeshData& mesh) {
-    if (mesh.carriers.is_empty() || written_format_of(path).has_carriers) return std::nullopt;
+    const auto& format = written_format_of(path);
+    if (mesh.carriers.is_empty() || format.has_carriers || !fault_of_cells(format, mesh).empty())
+        return std::nullopt;
     if (std::ranges::count(mesh.kinds, topology::CellKind::polyhedron) > 0)
         return path.string() +
                ": the format has no place for the carriers of a body that was cut, without which "

@@ -27,7 +27,8 @@ namespace incise::io {
 void write_mesh(const std::filesystem::path& path, const topology::MeshData& mesh);
 
 /// Returns a warning of what the format of the path cannot contain, and write_mesh() leaves out:
-/// the carriers of a cut body, unless the format is .vtu.
+/// the carriers of a cut body, unless the format is .vtu. There is none if write_mesh() refuses the
+/// mesh.
 /// @pre  check_writable() has passed
 std::optional<std::string> loss_in_format(const std::filesystem::path& path,
                                           const topology::MeshData& mesh);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -411,6 +412,32 @@ TEST_F(Cut, DividesHexahedraExactly) {
     const auto outcome = run("cut bricks.vtu --out out.msh --plane 0.55,0,0,1,0,0");
     EXPECT_EQ(outcome.status, 2);
     EXPECT_NE(outcome.err.find("has no polyhedra, and cell "), std::string::npos) << outcome.err;
+}
+
+TEST_F(Cut, BecomesTetrahedraForFormatsWithoutPolyhedra) {
+    cut("--plane 0.55,0.5,0.5,1,0.2,0.1", "bricks.vtu");
+    const auto body = json::parse(run("info --json out.vtu").out);
+    for (const std::string suffix : {".msh", ".inp", ".usda"}) {
+        SCOPED_TRACE(suffix);
+        const auto refused = run("convert out.vtu parts" + suffix);
+        EXPECT_EQ(refused.status, 2);
+        EXPECT_EQ(std::ranges::count(refused.err, '\n'), 1) << refused.err;
+        EXPECT_NE(refused.err.find("--cells tetrahedra"), std::string::npos) << refused.err;
+        const auto outcome = run("convert out.vtu parts" + suffix + " --cells tetrahedra");
+        EXPECT_EQ(outcome.status, 0);
+        EXPECT_EQ(outcome.err, "");
+        const auto parts = json::parse(run("info --json parts" + suffix).out);
+        EXPECT_EQ(parts["components"], 2);
+        EXPECT_EQ(parts["warnings"], json::array());
+        EXPECT_EQ(parts["hexes"], 0);
+        for (const char* key : {"volume", "surface_area"})
+            EXPECT_NEAR(parts[key].get<double>(), body[key].get<double>(), 1e-12) << key;
+    }
+    EXPECT_EQ(run("convert out.vtu copy.vtu --cells polyhedra").status, 0);
+    EXPECT_EQ(support::read_text(folder_ / "copy.vtu"), support::read_text(folder_ / "out.vtu"));
+    const auto unknown = run("convert out.vtu copy.vtu --cells bricks");
+    EXPECT_EQ(unknown.status, 2);
+    EXPECT_NE(unknown.err.find("--cells: 'bricks' "), std::string::npos) << unknown.err;
 }
 
 TEST_F(Cut, GoesOnWithHexahedraThatItHasCut) {

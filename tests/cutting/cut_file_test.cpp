@@ -24,6 +24,7 @@
 #include "incise/physics/body/model.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_check.h"
+#include "random_tools.h"
 #include "support/mesh_families.h"
 #include "support/num_cases.h"
 #include "support/temporary_folder.h"
@@ -164,26 +165,6 @@ TEST(CutFiles, KeepMassesAndForces) {
             }
             EXPECT_LT(difference, 1e3 * rounding * largest);
         }
-}
-
-RestTool random_plane(test::Random& random) {
-    Vec3 point;
-    for (double& x : point) x = random.uniform(0.2, 0.8);
-    return {"plane", PlaneCut{point, random.vector(1.0)}};
-}
-
-/// A straight blade that goes through the body, or stops inside.
-RestTool random_blade(test::Random& random) {
-    const Vec3 along = random.vector(1.0).normalized();
-    const Vec3 ahead = along.cross(random.vector(1.0)).normalized();
-    const Vec3 middle = Vec3::Constant(0.5) + random.vector(0.2);
-    const double end = random.below(2) == 0 ? 2.0 : random.uniform(-0.2, 0.2);
-    Sweep sweep;
-    for (int i = 0; i <= 4; ++i) {
-        const Vec3 at = middle + (-1.5 + (end + 1.5) * i / 4) * ahead;
-        sweep.poses.push_back({at - 2.0 * along, at + 2.0 * along});
-    }
-    return {"sweep", sweep};
 }
 
 /// Cuts a body through files: each tool cuts what was read from the file of the tool before.

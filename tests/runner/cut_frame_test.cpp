@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "cut_scenes.h"
 #include "incise/base/error.h"
 #include "incise/fragments/validate.h"
 #include "incise/io/mesh/mesh_reader.h"
@@ -30,31 +31,6 @@ namespace {
 using fragments::FragmentMesh;
 using topology::Mesh;
 
-/// Through the whole cube at a slant, or down to its middle, where the mesh has no faces.
-const std::string blade_through = R"([[tool]]
-kind = "blade"
-name = "knife"
-edge = [[0, -0.1, 0.05], [0, 0.03, 0.053], [0, 0.2, 0.058]]
-path = [{ time = 0.01, at = [-0.05, 0, 0] }, { time = 0.03, at = [0.15, 0, 0.01] }]
-)";
-const std::string blade_halfway = R"([[tool]]
-kind = "blade"
-name = "knife"
-edge = [[0.047, -0.1, 0], [0.052, 0.2, 0.004]]
-path = [{ time = 0.01, at = [0, 0, 0.12] }, { time = 0.03, at = [0, 0, 0.041] }]
-)";
-const std::string plane_cut = R"([[tool]]
-kind = "cut"
-time = 0.015
-plane = { point = [0.05, 0.045, 0.05], normal = [0.1, 1, 0.3] }
-)";
-const std::string ball_carver = R"([[tool]]
-kind = "carver"
-shape = { sphere = { radius = 0.03 } }
-path = [{ time = 0.02, at = [0.05, 0.05, 0.13] }, { time = 0.03, at = [0.05, 0.05, 0.08] }]
-)";
-const std::string while_falling = dynamics(0.04, "gravity = [0, 0, -9.81]\ndamping = 5\n");
-
 const std::vector<scenario::Field> some_fields{scenario::Field::displacement, scenario::Field::mass,
                                                scenario::Field::stress};
 
@@ -71,36 +47,20 @@ test::FragmentShape shape_in_file(const Mesh& mesh, const FragmentMesh& fragment
     return test::shape_of(fragments, [&](CellId e) { return row[e.index()]; });
 }
 
-/// The mesh of the cube, of other cells.
-const std::string of_bricks =
-    "[mesh]\nbox = { size = [0.1, 0.1, 0.1], cells = [3, 3, 3], element = \"hex\" }\n";
-const std::string of_file = "[mesh]\nfile = \"cube.vtu\"\n";
-
-/// Writes a jittered cube of hexahedra, wedges and pyramids.
-void write_mixed_cube(const RunFolder& folder) {
-    topology::MeshData cube = test::brick_cube(test::Bricks::mixed, 3, 0.1, 5);
-    cube.scale(0.1);
-    io::write_mesh(folder / "cube.vtu", cube);
+/// Expects it of a body that was read from the frame of another.
+void expect_same_step_and_mass(const Simulation& read, const Simulation& written) {
+    constexpr double rounding = 1e-12;  // the order of sums differs with the ids
+    const double step = written.model().structure().rest_stable_step(),
+                 mass = written.model().energetics().totals().mass;
+    EXPECT_NEAR(read.model().structure().rest_stable_step(), step, rounding * step);
+    EXPECT_NEAR(read.model().energetics().totals().mass, mass, rounding * mass);
 }
-
-struct Tools {
-    std::string name, text;
-    std::string mesh = {};  ///< in place of that of soft_cube
-};
-
-std::string scene_of(const Tools& tools) {
-    return (tools.mesh.empty() ? soft_cube
-                               : tools.mesh + soft_cube.substr(soft_cube.find("[[material]]"))) +
-           tools.text;
-}
-
-std::ostream& operator<<(std::ostream& out, const Tools& tools) { return out << tools.name; }
 
 class CutFrame : public testing::TestWithParam<Tools> {};
 
 TEST_P(CutFrame, ReadAsAMeshIsTheBodyAtRest) {
     const RunFolder folder;
-    write_mixed_cube(folder);
+    write_cube(folder);
     Simulation written(folder.scenario(scene_of(GetParam()) + while_falling));
     run(written);
     ASSERT_GT(written.edits().size(), 0u);
@@ -117,13 +77,7 @@ TEST_P(CutFrame, ReadAsAMeshIsTheBodyAtRest) {
     EXPECT_EQ(fragments::validate(after, read.mesh()), std::vector<std::string>{});
     EXPECT_TRUE(shape_in_file(read.mesh(), after) == shape_in_file(written.mesh(), before));
     EXPECT_EQ(after.num_nodes(), before.num_nodes());
-    // The order of sums differs with the ids.
-    constexpr double rounding = 1e-12;
-    EXPECT_NEAR(read.model().structure().rest_stable_step(),
-                written.model().structure().rest_stable_step(),
-                rounding * written.model().structure().rest_stable_step());
-    EXPECT_NEAR(read.model().energetics().totals().mass, written.model().energetics().totals().mass,
-                rounding * written.model().energetics().totals().mass);
+    expect_same_step_and_mass(read, written);
     for (const ElementId e : after.elements())
         for (const NodeId n : after.corners(e))
             EXPECT_EQ(read.model().positions()[n.index()], after.rest_position(n));
@@ -146,7 +100,7 @@ TEST_P(CutFrame, ReadAsAMeshIsTheBodyAtRest) {
 
 TEST_P(CutFrame, IsScaledWithItsCarriers) {
     const RunFolder folder;
-    write_mixed_cube(folder);
+    write_cube(folder);
     Simulation written(folder.scenario(scene_of(GetParam()) + while_falling));
     run(written);
     io::write_vtu(folder / "frame.vtu", build_frame(written.model(), written.time(), {}));
@@ -213,88 +167,6 @@ TEST(FrameOfACutBody, HasTheMomentumOfItsPhysics) {
     EXPECT_EQ(io::read_mesh(folder / "frame.vtu").mesh.num_cells(), frame.mesh.num_cells());
 }
 
-TEST(FrameOfACutBody, HasTetrahedraInPlaceOfPolyhedra) {
-    const RunFolder folder;
-    write_mixed_cube(folder);
-    Simulation simulation(folder.scenario(scene_of({"", blade_halfway + plane_cut, of_file}) +
-                                          while_falling +
-                                          "[output]\ncells = \"tetrahedra\"\nphysics = true\n"));
-    run(simulation);
-    std::vector<scenario::Field> fields = simulation.scenario().output.fields;
-    ASSERT_EQ(std::erase(fields, scenario::Field::tetrahedra), 1u);
-    const auto polyhedra = build_frame(simulation.model(), 0.04, fields);
-    const auto frame = build_frame(simulation.model(), 0.04, simulation.scenario().output.fields);
-    EXPECT_EQ(std::ranges::count(frame.mesh.kinds, topology::CellKind::polyhedron), 0);
-    EXPECT_GT(std::ranges::count(polyhedra.mesh.kinds, topology::CellKind::polyhedron), 10);
-    EXPECT_TRUE(frame.mesh.carriers.is_empty());
-    const topology::SourceFaces faces(frame.mesh), faces_before(polyhedra.mesh);
-    const auto field = [](const std::vector<io::Field>& all, const std::string& name) {
-        return *std::ranges::find(all, name, &io::Field::name);
-    };
-    const auto ids =
-        std::get<std::vector<std::int64_t>>(field(frame.cell_fields, "element_id").values);
-    const auto ids_before =
-        std::get<std::vector<std::int64_t>>(field(polyhedra.cell_fields, "element_id").values);
-    // By element: its volume, the area of its faces on cuts, and its fields.
-    const auto sums_of = [&](const io::Frame& of, const topology::SourceFaces& its_faces,
-                             const std::vector<std::int64_t>& elements) {
-        const auto stress = std::get<std::vector<float>>(field(of.cell_fields, "von_mises").values);
-        std::map<std::int64_t, std::array<double, 3>> sums;
-        for (std::size_t c = 0; c < of.mesh.num_cells(); ++c) {
-            auto& [volume, area, value] = sums[elements[c]];
-            volume += its_faces.volume(c);
-            value = static_cast<double>(stress[c]);
-            for (int f = 0; f < its_faces.num_faces(c); ++f)
-                if (of.mesh.is_on_cut(c, f))
-                    area += topology::area_vector(its_faces.size({c, f}), [&](int p) {
-                                return its_faces.position({c, f}, p);
-                            }).norm();
-        }
-        return sums;
-    };
-    const auto sums = sums_of(frame, faces, ids),
-               sums_before = sums_of(polyhedra, faces_before, ids_before);
-    ASSERT_EQ(sums.size(), sums_before.size());
-    constexpr double brick = 0.1 * 0.1 * 0.1 / 27.0;  // m3
-    double cut_area = 0.0, cut_area_before = 0.0;
-    for (const auto& [e, before] : sums_before) {
-        EXPECT_NEAR(sums.at(e)[0], before[0], 1e-12 * brick);
-        EXPECT_EQ(sums.at(e)[2], before[2]);
-        cut_area += sums.at(e)[1];
-        cut_area_before += before[1];
-    }
-    // Bent faces have more area in triangles.
-    EXPECT_GT(cut_area_before, 0.0);
-    EXPECT_NEAR(cut_area, cut_area_before, 0.02 * cut_area_before);
-    for (const char* name : {"mass", "force"}) {
-        const auto sum = [&](const io::Frame& of) {
-            double total = 0.0;
-            std::visit(
-                [&](const auto& values) {
-                    for (const auto v : values) total += static_cast<double>(v);
-                },
-                field(of.point_fields, name).values);
-            return total;
-        };
-        EXPECT_EQ(sum(frame), sum(polyhedra)) << name;
-    }
-    for (const io::Field& of_points : frame.point_fields)
-        EXPECT_EQ(of_points.size(),
-                  frame.mesh.points.size() * static_cast<std::size_t>(of_points.components));
-    io::write_vtu(folder / "frame.vtu", frame);
-    EXPECT_EQ(io::read_mesh(folder / "frame.vtu").mesh.num_cells(), frame.mesh.num_cells());
-}
-
-TEST(FrameOfACutBody, WithoutPolyhedraIsTheSameInTetrahedra) {
-    const RunFolder folder;
-    Simulation simulation(folder.scenario(soft_cube + plane_cut + while_falling));
-    run(simulation);
-    const std::vector<scenario::Field> tetrahedra{scenario::Field::mass,
-                                                  scenario::Field::tetrahedra};
-    EXPECT_EQ(io::vtu_text(build_frame(simulation.model(), 0.0, tetrahedra)),
-              io::vtu_text(build_frame(simulation.model(), 0.0, std::span(tetrahedra).first(1))));
-}
-
 TEST(FrameOfACutBody, OfABodyWithoutDivisionsHasNoCarriers) {
     const RunFolder folder;
     Simulation simulation(folder.scenario(soft_cube + two_tools + dynamics(0.16)));
@@ -323,12 +195,7 @@ TEST(FrameOfABody, HasTheCellsOfTheSourceThatReadingJoinsAgain) {
     io::write_vtu(folder / "frame.vtu", frame);
     const Simulation read(folder.scenario(text + while_falling));
     EXPECT_EQ(topology::components(read.mesh()).count, 1);
-    constexpr double rounding = 1e-12;
-    EXPECT_NEAR(read.model().structure().rest_stable_step(),
-                written.model().structure().rest_stable_step(),
-                rounding * written.model().structure().rest_stable_step());
-    EXPECT_NEAR(read.model().energetics().totals().mass, written.model().energetics().totals().mass,
-                rounding * written.model().energetics().totals().mass);
+    expect_same_step_and_mass(read, written);
 }
 
 TEST(FrameOfACutBody, ForgedIsRefusedWithTheFileAndARemedy) {
