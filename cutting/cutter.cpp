@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -39,6 +40,17 @@ Box box_round(const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edg
     for (const Vec3& x : edge_before) box.extend(x);
     for (const Vec3& x : edge_after) box.extend(x);
     return box;
+}
+
+/// Exchanges the places of some nodes, m. Returns how far they go at most, m.
+double exchange(topology::NodeField<VertexId, Vec3>& x,
+                std::vector<std::pair<VertexId, Vec3>>& places) {
+    double farthest = 0.0;
+    for (auto& [n, place] : places) {
+        farthest = std::max(farthest, (place - x[n]).norm());
+        std::swap(place, x[n]);
+    }
+    return farthest;
 }
 
 /// Returns the mean volume of the carriers at rest, m3, of which cells are left. It is the same, to
@@ -190,8 +202,9 @@ Split Cutter::split(CutId id, Mesh& mesh, const std::vector<Vec3>& edge_before,
             done = noted(split_cells(mesh, tissue,
                                      SweptEdge(shifted(id.index, edge_before),
                                                shifted(id.index, edge_after)),
-                                     cut.loops, resting),
+                                     cut.loops, resting, {nullptr, unfinished_}),
                          id.index);
+            std::erase_if(unfinished_, [](const LoopFront& front) { return front.is_empty(); });
         }
     } else if (!cut.front.is_empty() || tissue.may_meet(box_round(edge_before, edge_after))) {
         auto resting = suspended_cuts(id.index, &Cut::front);
@@ -211,9 +224,14 @@ Split Cutter::end_cut(CutId id, Mesh& mesh, const fragments::FragmentMesh& fragm
     tissue.before = tissue.after;  // it rests
     if (has_loops_) {
         auto resting = suspended_cuts(id.index, &Cut::loops);
-        return noted(finish_cells(mesh, fragments, tissue, blade.moved_by(shift_of(id.index)),
-                                  cut.loops, resting),
-                     id.index);
+        Split done = noted(finish_cells(mesh, fragments, tissue, blade.moved_by(shift_of(id.index)),
+                                        cut.loops, resting),
+                           id.index);
+        if (!cut.loops.is_empty()) {
+            unfinished_.push_back(std::exchange(cut.loops, {}));
+            own_edit_.has_ended = true;
+        }
+        return done;
     }
     auto resting = suspended_cuts(id.index, &Cut::front);
     return noted(
@@ -225,11 +243,20 @@ Split Cutter::split(Mesh& mesh, const CutSurface& surface, double snap) {
     if (has_loops_) {
         LoopFront front;
         auto resting = suspended_cuts(std::nullopt, &Cut::loops);
+        KnownSurfaces::Seen seen;
         if (resting.empty()) {  // a blade at work has to see nodes move, not jump
             opened_.settle(mesh, std::numeric_limits<std::size_t>::max());
             if (opened_.has_new()) boxes_.move(mesh, now_.values(), opened_.move_new(now_));
+            if (const auto number = known_.find(surface, opened_.usual()))
+                seen = known_.seen(mesh, surface, *number, now_, opened_.usual());
         }
-        return noted(split_cells(mesh, motion(mesh), surface, front, resting), std::nullopt);
+        const double farthest = exchange(now_, seen.displaced);
+        if (farthest > 0.0) boxes_.move(mesh, now_.values(), farthest);
+        Split done =
+            split_cells(mesh, motion(mesh), surface, front, resting, {&seen.on_surface, {}});
+        exchange(now_, seen.displaced);
+        known_.note(surface, front, done.changes, now_, opened_.usual());
+        return noted(std::move(done), std::nullopt);
     }
     CutFront front;
     auto resting = suspended_cuts(std::nullopt, &Cut::front);
@@ -264,7 +291,32 @@ void Cutter::apply(const Mesh& mesh, const ChangeSet& changes) {
             cuts_[i].loops.apply(mesh, changes);
         }
     boxes_.apply(mesh, changes);
-    if (has_loops_) opened_.apply(mesh, changes);
+    if (has_loops_) {
+        opened_.apply(mesh, changes);
+        known_.apply(changes);
+        forget_unfinished(mesh, changes, own.has_ended);
+    }
+}
+
+/// Forgets the unfinished cuts through which another one goes.
+/// @param is_last_own  true if the edit has made the last one
+void Cutter::forget_unfinished(const Mesh& mesh, const ChangeSet& changes, bool is_last_own) {
+    if (unfinished_.empty()) return;
+    std::vector<VertexId> nodes;
+    for (const topology::CellRecord& record : changes.elements_removed)
+        std::ranges::copy(record.corners, std::back_inserter(nodes));
+    for (const CellId e : topology::touched_cells(changes))
+        if (e.index() < mesh.element_capacity() && mesh.is_alive(e))
+            std::ranges::copy(mesh.corners(e), std::back_inserter(nodes));
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    const auto last = unfinished_.end() - (is_last_own ? 1 : 0);
+    unfinished_.erase(std::remove_if(unfinished_.begin(), last,
+                                     [&](const LoopFront& cut) {
+                                         return std::ranges::any_of(
+                                             nodes, [&](VertexId n) { return cut.is_on(n); });
+                                     }),
+                      last);
 }
 
 std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) const {
@@ -299,7 +351,8 @@ bool Cutter::is_on(const Mesh& mesh) const {
            std::ranges::all_of(
                cuts_,
                [&](const Cut& cut) { return cut.front.is_on(mesh) && cut.loops.is_on(mesh); }) &&
-           opened_.is_on(mesh);
+           opened_.is_on(mesh) && known_.is_on(mesh) &&
+           std::ranges::all_of(unfinished_, [&](const LoopFront& cut) { return cut.is_on(mesh); });
 }
 
 }  // namespace incise::cutting

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "incise/base/types.h"
+#include "incise/cutting/exact/known_surfaces.h"
 #include "incise/cutting/exact/loop_splitter.h"
 #include "incise/cutting/exact/opened_nodes.h"
 #include "incise/cutting/exact/snap_history.h"
@@ -130,7 +131,7 @@ class Cutter {
     /// Archives everything except where the present motion began.
     static void archive(auto& ar, auto& self) {
         ar(self.has_loops_, self.shift_, self.cuts_, self.boxes_, self.snap_history_, self.now_,
-           self.opened_);
+           self.opened_, self.known_, self.unfinished_);
     }
 
   private:
@@ -150,6 +151,7 @@ class Cutter {
         std::uint64_t epoch = 0;         // after the edit
         std::optional<std::size_t> cut;  // the cut whose front has already followed
         bool history_followed = false;   // true if the snap history has already followed
+        bool has_ended = false;          // true if the last unfinished cut has already followed
     };
 
     Cut& cut_of(CutId id);
@@ -167,6 +169,8 @@ class Cutter {
         return {mesh, before_.values(), now_.values(), &boxes_};
     }
     Split noted(Split done, std::optional<std::size_t> worker);
+    void forget_unfinished(const topology::Mesh& mesh, const topology::ChangeSet& changes,
+                           bool is_last_own);
 
     topology::ElementBoxes boxes_;
     SnapHistory snap_history_;
@@ -177,6 +181,8 @@ class Cutter {
     bool has_loops_;      // true unless all cells are tetrahedra
     double shift_ = 0.0;  // of blades, m: see shifted()
     OpenedNodes opened_;
+    KnownSurfaces known_;
+    std::vector<LoopFront> unfinished_;  // of cuts that have ended inside the body
 };
 
 }  // namespace incise::cutting

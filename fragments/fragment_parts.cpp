@@ -287,7 +287,9 @@ void FragmentParts::keep_together(const std::vector<std::size_t>& lights) {
                 if (connected.find(a) == connected.find(b)) continue;
                 const bool is_first = is_element(neighbor.part) ||
                                       (!is_element(part) && is_larger(part, neighbor.part));
-                bridges.push_back(is_first ? part : neighbor.part);
+                const std::size_t bridge = is_first ? part : neighbor.part;
+                // Neighbours without a common node are in files that somebody has changed only.
+                if (!is_element(bridge)) bridges.push_back(bridge);
             }
         if (bridges.empty()) break;
         for (const std::size_t part : bridges) parts_[part]->master = part;

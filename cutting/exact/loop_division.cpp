@@ -357,6 +357,13 @@ void LoopStep::close(LoopFront& front, CellId e, VertexId v, VertexId w) {
         if (find_dart(mesh_, part, v, w).is_valid()) close(front, part, v, w);
 }
 
+/// Divides the cells that were to stay whole, but that the cut has come all round.
+void LoopStep::close_all() {
+    only_.reset();
+    for (const CellId e : front_.open_cells())
+        for (const Edge& edge : std::vector(front_.open_edges(e))) close(front_, e, edge.a, edge.b);
+}
+
 /// Divides a face, which lies on a cut, by a node in its middle.
 void LoopStep::divide_at_centre(FaceId f) {
     const FaceId other = mesh_.neighbor(f);

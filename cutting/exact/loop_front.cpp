@@ -26,6 +26,13 @@ void LoopFront::mark(VertexId a, VertexId b) {
     insert_sorted(marked_[b], a);
 }
 
+std::vector<CellId> LoopFront::open_cells() const {
+    std::vector<CellId> cells;
+    for (const auto& entry : open_) cells.push_back(entry.first);
+    std::ranges::sort(cells);
+    return cells;
+}
+
 void LoopFront::set_closed(CellId e, VertexId a, VertexId b) {
     const auto it = open_.find(e);
     if (it == open_.end()) return;
@@ -82,6 +89,19 @@ void LoopFront::toggle_passed(const PassedEdge& edge) {
         passed_.push_back(edge);
     else
         passed_.erase(it);
+}
+
+bool LoopFront::add(const LoopFront& other) {
+    for (const auto& entry : other.nodes_)
+        if (is_on(entry.first)) return false;
+    nodes_.insert(other.nodes_.begin(), other.nodes_.end());
+    for (const auto& [a, ends] : other.marked_)
+        for (const VertexId b : ends) mark(a, b);
+    switched_.insert(other.switched_.begin(), other.switched_.end());
+    for (const auto& [e, edges] : other.open_)
+        open_[e].insert(open_[e].end(), edges.begin(), edges.end());
+    passed_.insert(passed_.end(), other.passed_.begin(), other.passed_.end());
+    return true;
 }
 
 LoopFront::Corner LoopFront::corner(const Mesh& mesh, FaceId f, VertexId n) {

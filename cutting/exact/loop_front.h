@@ -104,10 +104,18 @@ class LoopFront {
         const auto it = open_.find(e);
         return it != open_.end() ? it->second : none;
     }
+    /// Returns the cells with open edges, in ascending order.
+    std::vector<CellId> open_cells() const;
     void set_open(CellId e, VertexId a, VertexId b) { open_[e].push_back(edge_between(a, b)); }
     void set_closed(CellId e, VertexId a, VertexId b);
     /// Follows the division of a cell: open edges that it has lost are those of the added part.
     void divide(const topology::Mesh& mesh, CellId kept, CellId added);
+
+    /// Follows the blade out of the body, the way it came: passes edges at nodes of the cut, so
+    /// that the cut comes into each face as often as it goes out. Another blade may then come.
+    void draw_back(const topology::Mesh& mesh);
+    /// Adds another cut, with no common nodes. Returns false, and changes nothing, if there are.
+    bool add(const LoopFront& other);
 
     /// True if the mesh has all nodes and cells that it names.
     bool is_on(const topology::Mesh& mesh) const;

@@ -32,19 +32,22 @@ bool is_plane(const Mesh& mesh, FaceId f) {
 Split LoopStep::run() {
     find_crossed_edges();
     if (pending_.empty()) return {};
+    take_up_earlier_cuts();
     edit_.emplace(mesh_);
     divide_warped_faces();
     passes_left_ = most_passes(crossed_.size());
     while (!queue_.empty()) divide_next();
-    if (is_swept_)
+    if (is_swept_) {
         settle();
-    else
+        if (only_) close_all();
+    } else {
         join_all();
+    }
     triangulate_all();
     open_faces();
     Split result{edit_->commit(), report_};
     front_.apply(mesh_, result.changes);
-    front_.leave_behind(mesh_);
+    if (is_swept_) front_.leave_behind(mesh_);
     return result;
 }
 
@@ -74,6 +77,10 @@ void LoopStep::find_crossed_edges() {
         const Edge& edge = edges.entries()[i].edge;
         EdgeIntersections passed =
             intersections_of(surface_, point(edge.a), point(edge.b), nearness);
+        // A chord of a surface that comes again is crossed only if its ends are parted.
+        const auto* known = earlier_.on_surface;
+        if (known && (known->contains(edge.a) || known->contains(edge.b)))
+            passed.resize(passed.size() % 2);
         if (passed.empty()) continue;
         is_crossed[i] = true;
         receive(edge, std::move(passed));
@@ -82,6 +89,25 @@ void LoopStep::find_crossed_edges() {
         if (is_crossed[edge] && (crossed_.empty() || crossed_.back() != e)) crossed_.push_back(e);
     report_.elements_crossed = static_cast<std::size_t>(
         std::ranges::count_if(crossed_, [&](CellId e) { return !stays_whole(e); }));
+}
+
+/// Goes on with those earlier cuts to nodes of which the surface comes.
+void LoopStep::take_up_earlier_cuts() {
+    if (!is_swept_) return;
+    for (LoopFront& cut : earlier_.unfinished) {
+        const bool is_met = std::ranges::any_of(pending_, [&](const auto& entry) {
+            const auto& [edge, intersections] = entry;
+            if (cut.is_marked(edge.a, edge.b)) return true;
+            const double length = rest_length(edge.a, edge.b);
+            return std::ranges::any_of(intersections, [&](const EdgeIntersection& x) {
+                return (cut.is_on(edge.a) &&
+                        x.place * length < nearness * cut.local_edge_length(edge.a)) ||
+                       (cut.is_on(edge.b) &&
+                        (1.0 - x.place) * length < nearness * cut.local_edge_length(edge.b));
+            });
+        });
+        if (is_met && front_.add(cut)) cut = {};
+    }
 }
 
 void LoopStep::receive(const Edge& edge, EdgeIntersections intersections) {
@@ -181,8 +207,8 @@ void LoopStep::divide_pending(const Edge& edge, VertexId middle, double place) {
 }
 
 Split split_cells(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
-                  LoopFront& front, std::span<SuspendedLoops> resting) {
-    return LoopStep(mesh, tissue, surface, front, resting).run();
+                  LoopFront& front, std::span<SuspendedLoops> resting, const EarlierCuts& earlier) {
+    return LoopStep(mesh, tissue, surface, front, resting, std::nullopt, earlier).run();
 }
 
 Split finish_cells(Mesh& mesh, const fragments::FragmentMesh& fragments, const TissueMotion& tissue,
@@ -193,7 +219,7 @@ Split finish_cells(Mesh& mesh, const fragments::FragmentMesh& fragments, const T
     Split result = LoopStep(mesh, tissue, end.continuation(place.exit_distance), front, resting,
                             cells_to_part(end, place, mesh, tissue.after, front))
                        .run();
-    front = {};
+    front.draw_back(mesh);
     return result;
 }
 

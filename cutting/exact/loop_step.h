@@ -25,13 +25,15 @@ class LoopStep {
   public:
     LoopStep(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
              LoopFront& front, std::span<SuspendedLoops> resting,
-             std::optional<std::unordered_set<CellId>> only = std::nullopt)
+             std::optional<std::unordered_set<CellId>> only = std::nullopt,
+             const EarlierCuts& earlier = {})
         : mesh_(mesh),
           tissue_(tissue),
           surface_(surface),
           front_(front),
           resting_(resting),
           only_(std::move(only)),
+          earlier_(earlier),
           is_swept_(surface.is_swept()),
           num_old_nodes_(mesh.node_capacity()) {}
 
@@ -89,6 +91,7 @@ class LoopStep {
 
     // What the surface crosses: loop_splitter.cpp.
     void find_crossed_edges();
+    void take_up_earlier_cuts();
     void receive(const Edge& edge, EdgeIntersections intersections);
     void divide_pending(const Edge& edge, VertexId middle, double place);
     void divide_warped_faces();
@@ -115,6 +118,7 @@ class LoopStep {
     bool parts_evenly(const LoopFront& front, CellId e, VertexId from, VertexId n,
                       VertexId to) const;
     void close(LoopFront& front, CellId e, VertexId v, VertexId w);
+    void close_all();
     void divide_at_centre(FaceId f);
     void triangulate_all();
     void open_faces();
@@ -139,6 +143,7 @@ class LoopStep {
     LoopFront& front_;
     const std::span<SuspendedLoops> resting_;
     std::optional<std::unordered_set<CellId>> only_;  // if set, this cut leaves other cells whole
+    const EarlierCuts earlier_;
     const bool is_swept_;
     double time_ = 0.0;  // of the intersection that is the last one so far
     const std::size_t num_old_nodes_;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "incise/cutting/exact/opened_nodes.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
 
+#include "incise/cutting/exact/shortest_inside.h"
 #include "incise/cutting/exact/split.h"
 
 namespace incise::cutting {
@@ -24,50 +24,6 @@ constexpr std::size_t max_planes = 6;
 /// A node is not moved by more than this many margins: in a wedge so sharp, or between the two
 /// faces at the tip of a cut, there is no place inside.
 constexpr double most_margins = 4.0;
-
-/// The half space normal . d <= -depth.
-struct HalfSpace {
-    Vec3 normal;  // of unit length
-    double depth;
-};
-
-/// Returns the shortest vector into all half spaces; zero if there is none within `most`.
-Vec3 shortest_into(std::span<const HalfSpace> spaces, double most) {
-    constexpr double rounding = 1e-9;  // of the longest vector, and of 1
-    Vec3 best = Vec3::Zero();
-    double least = std::numeric_limits<double>::infinity();
-    const auto try_it = [&](const Vec3& d) {
-        const double length = d.norm();
-        if (!(length < least) || length > most) return;
-        for (const HalfSpace& space : spaces)
-            if (space.normal.dot(d) > -space.depth + rounding * most) return;
-        best = d;
-        least = length;
-    };
-    const auto try_edge = [&](const HalfSpace& a, const HalfSpace& b) {
-        const double cosine = a.normal.dot(b.normal), det = 1.0 - cosine * cosine;
-        if (det < rounding) return;
-        try_it(
-            -((a.depth - cosine * b.depth) * a.normal + (b.depth - cosine * a.depth) * b.normal) /
-            det);
-    };
-    const auto try_corner = [&](const HalfSpace& a, const HalfSpace& b, const HalfSpace& c) {
-        const Vec3 bc = b.normal.cross(c.normal), ca = c.normal.cross(a.normal),
-                   ab = a.normal.cross(b.normal);
-        const double det = a.normal.dot(bc);
-        if (std::abs(det) < rounding) return;
-        try_it(-(a.depth * bc + b.depth * ca + c.depth * ab) / det);
-    };
-    try_it(Vec3::Zero());
-    for (std::size_t i = 0; i < spaces.size(); ++i) {
-        try_it(-spaces[i].depth * spaces[i].normal);
-        for (std::size_t j = 0; j < i; ++j) {
-            try_edge(spaces[i], spaces[j]);
-            for (std::size_t k = 0; k < j; ++k) try_corner(spaces[i], spaces[j], spaces[k]);
-        }
-    }
-    return best;
-}
 
 /// An opened face at rest.
 struct Face {
@@ -276,17 +232,17 @@ void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
                     faces.push_back(face);
         }
         std::ranges::stable_sort(faces, std::greater(), &Face::width);
-        std::vector<HalfSpace> spaces;
+        std::vector<InnerSide> spaces;
         node.planes.clear();
         for (const Face& face : faces) {
-            const auto is_same = [&](const HalfSpace& other) {
+            const auto is_same = [&](const InnerSide& other) {
                 return other.normal.dot(face.normal) >= least_cosine_of_plane;
             };
             if (spaces.size() == max_planes || std::ranges::any_of(spaces, is_same)) continue;
             spaces.push_back({face.normal, node.margin});
             // The places of the nodes, which are not exactly on the cut, turn narrow faces.
             if (face.width < node.margin && spaces.size() > 1 &&
-                shortest_into(spaces, most_margins * node.margin).isZero(0.0)) {
+                shortest_inside(spaces, most_margins * node.margin).isZero(0.0)) {
                 spaces.pop_back();
                 continue;
             }
@@ -301,7 +257,7 @@ void OpenedNodes::move(VertexId n, Node& node, std::span<const Vec3> positions, 
     node.is_moved = true;
     const Vec3& x = positions[n.index()];
     if (!node.planes.empty()) {
-        std::array<HalfSpace, max_planes> spaces;
+        std::array<InnerSide, max_planes> spaces;
         std::size_t count = 0;
         for (const auto& [a, b, c] : node.planes) {
             const Vec3& first = positions[a.index()];
@@ -310,7 +266,7 @@ void OpenedNodes::move(VertexId n, Node& node, std::span<const Vec3> positions, 
                                     .stableNormalized();
             spaces[count++] = {normal, node.margin + normal.dot(x - first)};
         }
-        node.offset = shortest_into(std::span(spaces).first(count), most_margins * node.margin);
+        node.offset = shortest_inside(std::span(spaces).first(count), most_margins * node.margin);
         seen[n] = x + node.offset;
         return;
     }

@@ -50,6 +50,9 @@ class OpenedNodes {
     /// True if some nodes are not where they should be.
     bool has_new() const;
 
+    /// Returns the size of the cells of the body, m.
+    double usual() const { return usual_; }
+
     /// True if the mesh has all nodes that it names.
     bool is_on(const topology::Mesh& mesh) const;
     static void archive(auto& ar, auto& self) { ar(self.usual_, self.nodes_, self.unsettled_); }

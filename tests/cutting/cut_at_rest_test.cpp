@@ -207,7 +207,7 @@ std::vector<Cube> cubes(int n) {
     return all;
 }
 
-// Right through a body of any cells; within it, and along a surface that bends, in tetrahedra.
+// Right through a body, within it, and along a surface that bends.
 TEST(CutAtRest, OfTheSameToolAgainChangesNothing) {
     for (const auto& [name, data] : cubes(4))
         for (int seed = 0; seed < test::num_cases(4); ++seed) {
@@ -221,15 +221,12 @@ TEST(CutAtRest, OfTheSameToolAgainChangesNothing) {
             };
             const RestTool plane{"plane", PlaneCut{point, normal}};
             const RestTool sweep{"sweep", Sweep{{edge(-2), edge(-0.3), edge(0.2), edge(2)}}};
-            std::vector<std::vector<RestTool>> programs = {
-                {plane, plane, plane}, {sweep, sweep, sweep}, {plane, sweep, plane}};
-            if (name.starts_with("tetrahedra")) {
-                const RestTool sphere{"sphere", SurfaceCut{test::icosphere(point, 0.31, 2)}};
-                const RestTool part{"part", Sweep{{edge(-2), edge(-0.3), edge(0.02)}}};
-                const RestTool back{"back", Sweep{{edge(-2), edge(0.02), edge(-2)}}};
-                programs.insert(programs.end(),
-                                {{sphere, sphere, sphere}, {part, part, part}, {back, back}});
-            }
+            const RestTool sphere{"sphere", SurfaceCut{test::icosphere(point, 0.31, 2)}};
+            const RestTool part{"part", Sweep{{edge(-2), edge(-0.3), edge(0.02)}}};
+            const RestTool back{"back", Sweep{{edge(-2), edge(0.02), edge(-2)}}};
+            const std::vector<std::vector<RestTool>> programs = {
+                {plane, plane, plane},    {sweep, sweep, sweep}, {plane, sweep, plane},
+                {sphere, sphere, sphere}, {part, part, part},    {back, back}};
             for (const auto& tools : programs) {
                 SCOPED_TRACE(name + ", seed " + std::to_string(seed) + ", " + tools[0].name + ", " +
                              tools[1].name);
@@ -238,13 +235,55 @@ TEST(CutAtRest, OfTheSameToolAgainChangesNothing) {
                 const auto& first = report.tools.front();
                 EXPECT_GT(first.counts.faces_opened, 0u);
                 for (const ToolReport& again : std::span(report.tools).subspan(1)) {
+                    EXPECT_EQ(again.pieces, first.pieces);
+                    // A path that comes back may open faces that are smaller than the tolerance.
+                    if (tools[0].name == "back" && name.ends_with("0.200000")) {
+                        EXPECT_LT(again.counts.cut_area, 1e-5);
+                        continue;
+                    }
                     EXPECT_EQ(again.counts.faces_opened, 0u);
                     EXPECT_EQ(again.counts.cut_area, 0.0);
-                    EXPECT_EQ(again.pieces, first.pieces);
                 }
-                EXPECT_EQ(report.warnings.size(), tools.size() - 1);
+                if (tools[0].name != "back") {
+                    EXPECT_EQ(report.warnings.size(), tools.size() - 1);
+                }
             }
         }
+}
+
+// Strokes that end inside the body, and one that goes on with their cut.
+TEST(CutAtRest, OfStrokesThatGoDeeperIsThatOfOneStroke) {
+    for (const auto& [name, data] : cubes(4)) {
+        if (name.starts_with("tetrahedra")) continue;
+        for (int seed = 0; seed < test::num_cases(8); ++seed) {
+            SCOPED_TRACE(name + ", seed " + std::to_string(seed));
+            test::Random random(900 + static_cast<std::uint64_t>(seed));
+            const Vec3 point = Vec3::Constant(0.5) + random.vector(0.1);
+            const Vec3 normal = random.vector(1.0).normalized();
+            const Vec3 along = normal.unitOrthogonal(), ahead = normal.cross(along);
+            const auto stroke = [&](double to) {
+                Sweep sweep;
+                for (const double at : {-2.0, -0.3, to})
+                    sweep.poses.push_back(
+                        {point + at * ahead - 2.0 * along, point + at * ahead + 2.0 * along});
+                return RestTool{"stroke", sweep};
+            };
+            const double first = random.uniform(-0.25, 0.1);
+            const double second = first + random.uniform(0.02, 0.3);
+            Mesh once = Mesh::build(data).mesh, deeper = once;
+            const auto whole = cut_at_rest(once, std::vector{stroke(2.0)}, CutMode::split);
+            const auto parts = cut_at_rest(
+                deeper, std::vector{stroke(first), stroke(second), stroke(2.0)}, CutMode::split);
+            ASSERT_EQ(whole.pieces.size(), 2u);
+            ASSERT_GE(parts.pieces.size(), 2u);
+            // Where cells are small, a crumb may come off.
+            constexpr double largest_crumb = 1e-3;
+            for (std::size_t p = 0; p < 2; ++p)
+                EXPECT_NEAR(parts.pieces[p].volume, whole.pieces[p].volume, largest_crumb);
+            EXPECT_NEAR(parts.total.cut_area, whole.total.cut_area, 0.01 * whole.total.cut_area);
+            EXPECT_LE(parts.volume_error(), 1e-13);
+        }
+    }
 }
 
 // They also have nodes of earlier poses, and sides that keep their nodes.

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <random>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "soft_world.h"
+#include "support/mesh_families.h"
+#include "support/num_cases.h"
 
 namespace incise::sim {
 namespace {
@@ -17,13 +20,20 @@ struct Pressed {
     int cells = 1;
     double snap = cutting::default_snap;
     double friction = 0.5;
+    std::optional<test::Bricks> bricks = {};  // tetrahedra if there are none
 };
 
 World pressed_world(const Pressed& c) {
     constexpr double height = 0.04;
     WorldDef def;
-    def.mesh = topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
-                                  Vec3::Constant(height), {c.cells, c.cells, c.cells});
+    if (c.bricks) {
+        topology::MeshData data = test::brick_cube(*c.bricks, c.cells, 0.0, 1);
+        for (Vec3& x : data.points) x *= height;
+        def.mesh = std::move(data);
+    } else {
+        def.mesh = topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
+                                      Vec3::Constant(height), {c.cells, c.cells, c.cells});
+    }
     def.materials = {{1000.0, physics::HyperElasticLinks{physics::NeoHookean{1785.0, 14286.0}}}};
     def.damping = 20.0;
     def.contact.friction = c.friction;
@@ -49,23 +59,50 @@ void cut(World& world, double snap) {
     cut(world, cutting::PlaneCut{{0.02, 0.02, 0.0201}, Vec3(0.2, 0.1, 1), snap});
 }
 
+std::string name_of(const Pressed& c) {
+    return (testing::Message() << "bricks " << (c.bricks ? static_cast<int>(*c.bricks) : -1)
+                               << ", strain " << c.strain << ", " << c.cells << " cells, snap "
+                               << c.snap << ", friction " << c.friction)
+        .GetString();
+}
+
+/// Bodies of each kind of cells but tetrahedra, pressed in several ways.
+std::vector<Pressed> in_all_bricks(std::initializer_list<Pressed> ways) {
+    std::vector<Pressed> all;
+    for (const test::Bricks bricks :
+         {test::Bricks::hexahedra, test::Bricks::wedges, test::Bricks::pyramids,
+          test::Bricks::mixed, test::Bricks::joined})
+        for (Pressed c : ways) {
+            c.bricks = bricks;
+            all.push_back(c);
+        }
+    return all;
+}
+
+void cut_again_and_again(const Pressed& c) {
+    SCOPED_TRACE(name_of(c));
+    World world = pressed_world(c);
+    cut(world, c.snap);
+    const std::size_t num_elements = world.mesh().num_elements();
+    EXPECT_EQ(topology::components(world.mesh()).count, 2);
+    for (int again = 0; again < 3; ++again) {
+        run_until(world, world.time() + 0.01);
+        cut(world, c.snap);
+        EXPECT_EQ(world.mesh().num_elements(), num_elements);
+        EXPECT_EQ(topology::components(world.mesh()).count, 2);
+    }
+}
+
 TEST(CutAgain, ChangesNothingInPressedTissue) {
     for (const Pressed& c : std::initializer_list<Pressed>{
-             {0.0}, {0.005}, {0.1}, {0.15, 3}, {0.1, 3, 0.0}, {0.1, 3, 0.015, 0.0}}) {
-        SCOPED_TRACE(testing::Message()
-                     << "strain " << c.strain << ", " << c.cells << " cells, snap " << c.snap
-                     << ", friction " << c.friction);
-        World world = pressed_world(c);
-        cut(world, c.snap);
-        const std::size_t num_elements = world.mesh().num_elements();
-        EXPECT_EQ(topology::components(world.mesh()).count, 2);
-        for (int again = 0; again < 3; ++again) {
-            run_until(world, world.time() + 0.01);
-            cut(world, c.snap);
-            EXPECT_EQ(world.mesh().num_elements(), num_elements);
-            EXPECT_EQ(topology::components(world.mesh()).count, 2);
-        }
-    }
+             {0.0}, {0.005}, {0.1}, {0.15, 3}, {0.1, 3, 0.0}, {0.1, 3, 0.015, 0.0}})
+        cut_again_and_again(c);
+}
+
+TEST(CutAgain, ChangesNothingInPressedCellsOfAnyKind) {
+    for (const Pressed& c :
+         in_all_bricks({{0.0, 2}, {0.005, 2}, {0.1, 2}, {0.15, 3}, {0.15, 3, 0.015, 0.0}}))
+        cut_again_and_again(c);
 }
 
 /// Three planes that cross near the middle. Those of seed 0 pass through nodes of a mesh of 8
@@ -83,27 +120,43 @@ std::vector<cutting::PlaneCut> crossing_planes(unsigned seed, double snap) {
     return planes;
 }
 
+/// Cuts by three planes, and by some of them again.
+void cut_across_and_again(World& world, unsigned seed, double snap) {
+    const auto planes = crossing_planes(seed, snap);
+    std::set<std::size_t> done;
+    for (const std::size_t i : {0, 1, 0, 2, 1, 0, 2}) {
+        const std::size_t num_elements = world.mesh().num_elements();
+        cut(world, planes[i]);
+        if (!done.insert(i).second) {
+            EXPECT_EQ(world.mesh().num_elements(), num_elements);
+        }
+        EXPECT_EQ(topology::components(world.mesh()).count, 1 << done.size());
+        run_until(world, world.time() + 0.005);
+    }
+}
+
 TEST(CutAgain, ChangesNothingAfterOtherCuts) {
     for (const Pressed& c : std::initializer_list<Pressed>{{0.005}, {0.05, 2}, {0.1}}) {
         World world = pressed_world(c);
         const std::string pressed = world.save();
         for (const double snap : {cutting::default_snap, 0.0})
             for (unsigned seed = 0; seed < (c.cells == 1 ? 3 : 1); ++seed) {
-                SCOPED_TRACE(testing::Message() << "strain " << c.strain << ", " << c.cells
-                                                << " cells, snap " << snap << ", seed " << seed);
+                SCOPED_TRACE(name_of(c) + ", seed " + std::to_string(seed));
                 world.restore(pressed);
-                const auto planes = crossing_planes(seed, snap);
-                std::set<std::size_t> done;
-                for (const std::size_t i : {0, 1, 0, 2, 1, 0, 2}) {
-                    const std::size_t num_elements = world.mesh().num_elements();
-                    cut(world, planes[i]);
-                    if (!done.insert(i).second) {
-                        EXPECT_EQ(world.mesh().num_elements(), num_elements);
-                    }
-                    EXPECT_EQ(topology::components(world.mesh()).count, 1 << done.size());
-                    run_until(world, world.time() + 0.005);
-                }
+                cut_across_and_again(world, seed, snap);
             }
+    }
+}
+
+TEST(CutAgain, ChangesNothingAfterOtherCutsInCellsOfAnyKind) {
+    for (const Pressed& c : in_all_bricks({{0.005, 2}, {0.02, 3}, {0.05, 3}})) {
+        World world = pressed_world(c);
+        const std::string pressed = world.save();
+        for (unsigned seed = 0; seed < test::num_cases(3); ++seed) {
+            SCOPED_TRACE(name_of(c) + ", seed " + std::to_string(seed));
+            world.restore(pressed);
+            cut_across_and_again(world, seed, c.snap);
+        }
     }
 }
 

@@ -45,7 +45,7 @@ TEST(World, MisuseIsRefusedAndChangesNothing) {
          },
          "it must be above 0"},
         {[&] {
-             world.add_tool({"plane", cutting::PlaneCut{{}, Vec3::Zero()}});
+             world.add_tool({"plane", cutting::PlaneCut{Vec3::Zero(), Vec3::Zero()}});
          },
          "the normal of its plane is zero"},
         {[&] {
