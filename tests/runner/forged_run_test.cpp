@@ -32,7 +32,8 @@ std::string refusal_of(const std::function<void()>& function) {
     return "";
 }
 
-class ForgedRun : public testing::Test {
+/// Of a body of tetrahedra, or of other cells, which become polyhedra where they are cut.
+class ForgedRun : public testing::TestWithParam<std::string> {
   protected:
     void SetUp() override {
         Simulation simulation(scenario_);
@@ -73,7 +74,7 @@ class ForgedRun : public testing::Test {
 
     static constexpr std::uint64_t num_steps = 12;
     RunFolder folder_;
-    Scenario scenario_ = folder_.scenario(soft_cube + R"(
+    Scenario scenario_ = folder_.scenario(GetParam() + R"(
 [[tool]]
 kind = "carver"
 shape = { sphere = { radius = 0.03 } }
@@ -94,7 +95,7 @@ checkpoint_interval = 0
     int num_resumed_ = 0;
 };
 
-TEST_F(ForgedRun, IsNotWhatItSeemsToBe) {
+TEST_P(ForgedRun, IsNotWhatItSeemsToBe) {
     resume(good_);
     EXPECT_EQ(num_resumed_, 1);
     const std::string again = good_;
@@ -102,7 +103,7 @@ TEST_F(ForgedRun, IsNotWhatItSeemsToBe) {
     EXPECT_TRUE(good_ == again);
 }
 
-TEST_F(ForgedRun, IsRefusedOrGoesOnWhateverBytesChange) {
+TEST_P(ForgedRun, IsRefusedOrGoesOnWhateverBytesChange) {
     Random random(4);
     int num_refused = 0;
     for (int i = 0; i < 400; ++i) {
@@ -145,7 +146,7 @@ TEST_F(ForgedRun, IsRefusedOrGoesOnWhateverBytesChange) {
     EXPECT_GT(num_resumed_, 25);  // other positions and velocities, say
 }
 
-TEST_F(ForgedRun, IsRefusedWhereRecordsContradictItsCheckpoint) {
+TEST_P(ForgedRun, IsRefusedWhereRecordsContradictItsCheckpoint) {
     io::write_file(out_ / "summary.json", "{}");
     for (const char* name : {"history.csv", "edits.jsonl", "frames/scene_000001.vtu"}) {
         SCOPED_TRACE(name);
@@ -182,7 +183,7 @@ TEST_F(ForgedRun, IsRefusedWhereRecordsContradictItsCheckpoint) {
     EXPECT_EQ(read_text(out_ / "scene.pvd").find(index.substr(0, index.find("  </Coll"))), 0u);
 }
 
-TEST_F(ForgedRun, IsRefusedIfAnotherVersionHasWrittenIt) {
+TEST_P(ForgedRun, IsRefusedIfAnotherVersionHasWrittenIt) {
     std::string bytes = good_, version = ArchiveReader(good_).read<std::string>();
     bytes[sizeof(std::uint64_t)] = version[0] = '9';  // the text is behind its length
     const std::string message = refusal_of([&] { resume(bytes); });
@@ -191,7 +192,7 @@ TEST_F(ForgedRun, IsRefusedIfAnotherVersionHasWrittenIt) {
     EXPECT_NE(message.find("resume with that one, or begin anew"), std::string::npos) << message;
 }
 
-TEST_F(ForgedRun, IsRefusedIfAnotherBuildHasWrittenIt) {
+TEST_P(ForgedRun, IsRefusedIfAnotherBuildHasWrittenIt) {
     std::string bytes = good_;
     const auto version = ArchiveReader(good_).read<std::string>();
     ++bytes[sizeof(std::uint64_t) + version.size()];  // the format is behind it
@@ -200,7 +201,7 @@ TEST_F(ForgedRun, IsRefusedIfAnotherBuildHasWrittenIt) {
     EXPECT_NE(message.find("resume with that one, or begin anew"), std::string::npos) << message;
 }
 
-TEST_F(ForgedRun, IsRefusedWhereItsLedgerContradictsItsEdits) {
+TEST_P(ForgedRun, IsRefusedWhereItsLedgerContradictsItsEdits) {
     using Forge = std::function<void(EditRecord&)>;
     const auto refusal = [&](const Forge& forge) {
         const auto bytes_of = [](const EditRecord& edit) {
@@ -305,6 +306,14 @@ TEST_F(ForgedSummary, IsRefusedOrReadWhateverBytesAreChanged) {
         }
     }
 }
+
+std::string soft_hexahedra() {
+    std::string text = soft_cube;
+    return text.insert(text.find("cells = "), "element = \"hex\", ");
+}
+
+INSTANTIATE_TEST_SUITE_P(OfTetrahedra, ForgedRun, testing::Values(soft_cube));
+INSTANTIATE_TEST_SUITE_P(OfHexahedra, ForgedRun, testing::Values(soft_hexahedra()));
 
 }  // namespace
 }  // namespace incise::runner
