@@ -4,6 +4,7 @@
 
 #include <array>
 #include <unordered_set>
+#include <span>
 #include <vector>
 
 #include "incise/topology/change_set.h"
@@ -66,6 +67,9 @@ class MeshEdit {
     /// Divides an edge, in all cells at it, by a new node at (1 - t) a + t b at rest, 0 < t < 1,
     /// where the dart goes from a to b. Returns the node.
     VertexId divide_edge(const Dart& d, double t);
+    /// The same for an edge from a to b.
+    /// @param cells  all cells at the edge; see append_cells_at_edge()
+    VertexId divide_edge(std::span<const CellId> cells, VertexId a, VertexId b, double t);
     /// Divides a face, on both sides, by a new edge between two of its corners. The part from
     /// `a` on to `b`, in the direction of the face, keeps the number of the face, and so does its
     /// other side. Returns the other part.

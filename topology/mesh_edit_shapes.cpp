@@ -39,10 +39,14 @@ void MeshEdit::update(CellId e) {
 VertexId MeshEdit::divide_edge(const Dart& d, double t) {
     require_alive(d.face.cell);
     const VertexId a = from(mesh_, d), b = to(mesh_, d);
-    if (!(t > 0.0 && t < 1.0))
-        throw InputError("edit: the place " + std::to_string(t) + " is not between 0 and 1");
     std::vector<CellId> cells;
     append_cells_at_edge(mesh_, d.face.cell, a, b, cells);
+    return divide_edge(cells, a, b, t);
+}
+
+VertexId MeshEdit::divide_edge(std::span<const CellId> cells, VertexId a, VertexId b, double t) {
+    if (!(t > 0.0 && t < 1.0))
+        throw InputError("edit: the place " + std::to_string(t) + " is not between 0 and 1");
     for (const CellId e : cells) require_no_new_row(e);
     const VertexId middle = add_node_between(a, b, t);
     mesh_.incident_elements_[middle.index()] = cells.front();

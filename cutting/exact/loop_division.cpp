@@ -32,7 +32,7 @@ VertexId LoopStep::divide_edge(VertexId a, VertexId b, double place) {
     assert(!cells.empty());
     divided_.insert(divided_.end(), cells.begin(), cells.end());
     const double length = rest_length(a, b);
-    const VertexId middle = edit_->divide_edge(find_dart(mesh_, cells.front(), a, b), place);
+    const VertexId middle = edit_->divide_edge(cells, a, b, place);
     place_new_node(middle, std::array{std::pair(a, 1.0 - place), std::pair(b, place)});
     note_rings(middle, a, cells);
     divide_pending(edge_between(a, b), middle, a < b ? place : 1.0 - place);
@@ -144,48 +144,54 @@ std::optional<LoopFront::PassedEdge> LoopStep::edge_to_pass(FaceId f) const {
     return found;
 }
 
+/// Passes the faces at a node in which it waits. After divide(face) has returned true, faces have
+/// other numbers, and there may be more of them.
+template <class Divide>
+void LoopStep::for_faces_where_waits(const LoopFront& front, VertexId v, Divide divide) {
+    for (bool is_done = false; !is_done;) {
+        is_done = true;
+        for (const CellId e : star(v))
+            for (int f = 0; f < mesh_.num_faces(e); ++f) {
+                const FaceId face{e, f}, other = mesh_.neighbor(face);
+                if ((other.is_valid() && other < face) || !front.waits(mesh_, face, v)) continue;
+                if (!divide(face)) continue;
+                is_done = false;
+                f = -1;
+            }
+    }
+}
+
 /// Joins a node with those that wait for it in the faces at it. In a face that is plane, a straight
 /// edge of a blade enters and leaves by turns: so pairs in the order of time are the true ones.
 void LoopStep::join_at(LoopFront& front, VertexId v) {
-    for (bool is_done = false; !is_done;) {
-        is_done = true;
-        for (const FaceId f : faces_at(v)) {
-            if (!front.waits(mesh_, f, v)) continue;
-            const auto partner = waiting_partner(front, f, v);
-            if (!partner) continue;
-            join(front, f, v, *partner);
-            is_done = false;  // faces have other numbers now
-            break;
-        }
-    }
+    for_faces_where_waits(front, v, [&](FaceId f) {
+        const auto partner = waiting_partner(front, f, v);
+        if (partner) join(front, f, v, *partner);
+        return partner.has_value();
+    });
 }
 
 /// Joins nodes where the surface is there at once: all that it crosses are known. Of the two ways
 /// to pair neighbours round a face, the shorter one is taken.
 void LoopStep::join_all() {
     for (const VertexId v : made_)
-        for (bool is_done = false; !is_done;) {
-            is_done = true;
-            for (const FaceId f : faces_at(v)) {
-                if (!front_.waits(mesh_, f, v)) continue;
-                std::vector<VertexId> waiting;
-                for (int p = 0; p < mesh_.face_size(f); ++p)
-                    if (const VertexId n = mesh_.face_corner(f, p); front_.waits(mesh_, f, n))
-                        waiting.push_back(n);
-                if (waiting.size() < 2) continue;
-                const auto length_of = [&](std::size_t begin) {
-                    double sum = 0.0;
-                    for (std::size_t i = begin; i + 1 < waiting.size() + begin; i += 2)
-                        sum += rest_length(waiting[i % waiting.size()],
-                                           waiting[(i + 1) % waiting.size()]);
-                    return sum;
-                };
-                const std::size_t begin = length_of(1) < length_of(0) ? 1 : 0;
-                join(front_, f, waiting[begin], waiting[(begin + 1) % waiting.size()]);
-                is_done = false;
-                break;
-            }
-        }
+        for_faces_where_waits(front_, v, [&](FaceId f) {
+            std::vector<VertexId> waiting;
+            for (int p = 0; p < mesh_.face_size(f); ++p)
+                if (const VertexId n = mesh_.face_corner(f, p); front_.waits(mesh_, f, n))
+                    waiting.push_back(n);
+            if (waiting.size() < 2) return false;
+            const auto length_of = [&](std::size_t begin) {
+                double sum = 0.0;
+                for (std::size_t i = begin; i + 1 < waiting.size() + begin; i += 2)
+                    sum +=
+                        rest_length(waiting[i % waiting.size()], waiting[(i + 1) % waiting.size()]);
+                return sum;
+            };
+            const std::size_t begin = length_of(1) < length_of(0) ? 1 : 0;
+            join(front_, f, waiting[begin], waiting[(begin + 1) % waiting.size()]);
+            return true;
+        });
 }
 
 /// Divides a face by an edge between two nodes of a cut.
@@ -205,7 +211,10 @@ void LoopStep::join(LoopFront& front, FaceId f, VertexId v, VertexId w) {
     let_all_pass(&front, f.cell, path);
     const VertexId end = path[1];
     // Other cuts can have divided the cells meanwhile.
-    for (const CellId e : star(v))
+    std::vector<CellId> cells = {f.cell};
+    if (other.is_valid()) cells.push_back(other.cell);
+    if (!resting_.empty()) cells = star(v);
+    for (const CellId e : cells)
         if (find_dart(mesh_, e, v, end).is_valid()) close(front, e, v, end);
 }
 

@@ -119,6 +119,13 @@ class LoopFront {
 
     /// True if the mesh has all nodes and cells that it names.
     bool is_on(const topology::Mesh& mesh) const;
+    /// Forgets everything but the nodes.
+    void keep_nodes_only() {
+        marked_.clear();
+        switched_.clear();
+        open_.clear();
+        passed_.clear();
+    }
     /// Follows an edit: copies of nodes are on the cut as their sources are.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
     /// Forgets the nodes round which nothing waits and each path is closed, if they are not at a

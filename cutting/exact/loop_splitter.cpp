@@ -46,6 +46,7 @@ Split LoopStep::run() {
     triangulate_all();
     open_faces();
     Split result{edit_->commit(), report_};
+    if (!is_swept_) front_.keep_nodes_only();
     front_.apply(mesh_, result.changes);
     if (is_swept_) front_.leave_behind(mesh_);
     return result;

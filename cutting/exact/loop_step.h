@@ -106,6 +106,8 @@ class LoopStep {
     std::vector<CellId> star(VertexId v) const;
     std::vector<FaceId> faces_at(VertexId v) const;
     std::optional<VertexId> waiting_partner(const LoopFront& front, FaceId f, VertexId v) const;
+    template <class Divide>
+    void for_faces_where_waits(const LoopFront& front, VertexId v, Divide divide);
     void join_at(LoopFront& front, VertexId v);
     void join_all();
     void settle();

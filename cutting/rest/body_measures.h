@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "incise/base/types.h"
@@ -32,9 +31,8 @@ struct BodyMeasures : FragmentCounts {
     double min_dihedral_angle = 0.0;                      ///< radians
     double min_altitude = 0.0, mean_edge_length = 0.0;    ///< m
     Vec3 box_min = Vec3::Zero(), box_max = Vec3::Zero();  ///< bounding box, m
-    /// The stable step of the fragments in a body of one material, times the speed of waves, m. Not
-    /// set if there are elements other than tetrahedra.
-    std::optional<double> step_length;
+    /// The stable step of the fragments in a body of one material, times the speed of waves, m.
+    double step_length = 0.0;
 };
 
 /// Returns the counts of the fragments of a mesh. Cost: O(n).

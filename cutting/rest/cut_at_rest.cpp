@@ -405,8 +405,7 @@ std::optional<double> RestCutReport::microseconds_per_crossed_element() const {
 }
 
 std::optional<double> RestCutReport::stable_step_ratio() const {
-    if (!before.step_length || !after.step_length) return std::nullopt;
-    return ratio(*after.step_length, *before.step_length);
+    return ratio(after.step_length, before.step_length);
 }
 
 RestCutReport cut_at_rest(Mesh& mesh, std::span<const RestTool> tools, CutMode mode) {

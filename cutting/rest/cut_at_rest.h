@@ -90,7 +90,7 @@ struct RestCutReport {
     /// split.
     std::optional<double> microseconds_per_crossed_element() const;
     /// Returns the stable step at rest after the cuts, divided by that before, for a body of one
-    /// material. Returns nothing if there are elements other than tetrahedra.
+    /// material. Returns nothing if nothing is left.
     std::optional<double> stable_step_ratio() const;
 };
 

@@ -24,7 +24,7 @@ namespace {
 using topology::Mesh;
 using topology::MeshData;
 
-constexpr std::size_t num_trials = 20;
+constexpr int num_trials = 20;
 constexpr double farthest = 0.03;  // nodes of a cut from its surface, mean edges
 constexpr double largest_angle = 0.5 * std::numbers::pi / 180.0;  // mean, of faces to a plane
 
@@ -52,6 +52,24 @@ const std::vector<Body>& bodies() {
          topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(), {1.0, 1.0, 3.0},
                             {12, 12, 12}),
          0.55, 0.5}};
+    return all;
+}
+
+/// Bodies of the other kinds of cells.
+const std::vector<Body>& bodies_of_any_cells() {
+    static const std::vector<Body> all = [] {
+        std::vector<Body> bodies;
+        for (const auto& [name, bricks] :
+             {std::pair("hexahedra", test::Bricks::hexahedra),
+              std::pair("wedges", test::Bricks::wedges),
+              std::pair("pyramids", test::Bricks::pyramids),
+              std::pair("mixed", test::Bricks::mixed), std::pair("joined", test::Bricks::joined)}) {
+            bodies.push_back({name, test::brick_cube(bricks, 8, 0.0, 1), 0.75, 0.5});
+            bodies.push_back({std::string("jittered ") + name, test::brick_cube(bricks, 8, 0.2, 1),
+                              bricks == test::Bricks::joined ? 0.4 : 0.55, 0.4});
+        }
+        return bodies;
+    }();
     return all;
 }
 
@@ -92,43 +110,61 @@ std::size_t pieces_beside(const Mesh& mesh, const PlaneCut& plane) {
     return heads.size();
 }
 
+/// Cuts a body by random planes, one at a time.
+/// @param area_in  of the part of a plane that is inside the uncut body, m2
+template <class AreaIn>
+void expect_smooth_planes(const Body& body, int num_planes, AreaIn area_in) {
+    const Mesh whole = Mesh::build(body.data).mesh;
+    test::Random random(1);
+    for (int trial = 0; trial < test::num_cases(num_planes); ++trial) {
+        SCOPED_TRACE(body.name + ", trial " + std::to_string(trial));
+        const PlaneCut plane = random_plane(box_of(whole), random);
+        Mesh mesh = Mesh::build(body.data).mesh;
+        const RestTool tool{"plane", plane};
+        const RestCutReport report = cut_at_rest(mesh, {&tool, 1}, CutMode::split);
+        EXPECT_EQ(report.pieces.size(), pieces_beside(whole, plane));
+        ASSERT_TRUE(report.total.surface_distance && report.total.mean_angle);
+        EXPECT_LE(report.total.surface_distance->nodes, farthest * report.before.mean_edge_length);
+        EXPECT_LE(*report.total.mean_angle, largest_angle);
+        const double area = area_in(whole, plane);
+        EXPECT_NEAR(report.total.cut_area, area, 0.002 * area);
+        EXPECT_GE(*report.stable_step_ratio(), body.step_after_one);
+    }
+}
+
 TEST(SmoothCut, AlongAPlanePartsEveryBodyAndKeepsTheStep) {
-    for (const Body& body : bodies()) {
-        const Mesh whole = Mesh::build(body.data).mesh;
-        test::Random random(1);
-        for (std::size_t trial = 0; trial < test::num_cases(num_trials); ++trial) {
-            SCOPED_TRACE(body.name + ", trial " + std::to_string(trial));
-            const PlaneCut plane = random_plane(box_of(whole), random);
-            Mesh mesh = Mesh::build(body.data).mesh;
-            const RestTool tool{"plane", plane};
-            const RestCutReport report = cut_at_rest(mesh, {&tool, 1}, CutMode::split);
-            EXPECT_EQ(report.pieces.size(), pieces_beside(whole, plane));
-            ASSERT_TRUE(report.total.surface_distance && report.total.mean_angle);
-            EXPECT_LE(report.total.surface_distance->nodes,
-                      farthest * report.before.mean_edge_length);
-            EXPECT_LE(*report.total.mean_angle, largest_angle);
-            const double area = area_in(whole, plane);
-            EXPECT_NEAR(report.total.cut_area, area, 0.002 * area);
-            EXPECT_GE(*report.stable_step_ratio(), body.step_after_one);
-        }
+    for (const Body& body : bodies()) expect_smooth_planes(body, num_trials, area_in);
+}
+
+/// Of the part of a plane that is inside the unit cube, m2.
+double area_in_cube(const Mesh&, const PlaneCut& plane) {
+    return area_in(Mesh::build(topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(),
+                                                  Vec3::Ones(), {1, 1, 1}))
+                       .mesh,
+                   plane);
+}
+
+TEST(SmoothCut, AlongAPlanePartsCellsOfAnyKindAndKeepsTheStep) {
+    for (const Body& body : bodies_of_any_cells()) expect_smooth_planes(body, 5, area_in_cube);
+}
+
+void expect_steps_after_eight_planes(const Body& body, int num_programs) {
+    test::Random random(2);
+    for (int trial = 0; trial < test::num_cases(num_programs); ++trial) {
+        SCOPED_TRACE(body.name + ", trial " + std::to_string(trial));
+        Mesh mesh = Mesh::build(body.data).mesh;
+        std::vector<RestTool> tools;
+        for (int i = 0; i < 8; ++i) tools.push_back({"plane", random_plane(box_of(mesh), random)});
+        const RestCutReport report = cut_at_rest(mesh, tools, CutMode::split);
+        EXPECT_GE(report.pieces.size(), 8u);
+        EXPECT_LE(report.volume_error(), 1e-12);
+        EXPECT_GE(*report.stable_step_ratio(), body.step_after_eight);
     }
 }
 
 TEST(SmoothCut, AlongEightPlanesKeepsTheStep) {
-    for (const Body& body : bodies()) {
-        test::Random random(2);
-        for (std::size_t trial = 0; trial < test::num_cases(5); ++trial) {
-            SCOPED_TRACE(body.name + ", trial " + std::to_string(trial));
-            Mesh mesh = Mesh::build(body.data).mesh;
-            std::vector<RestTool> tools;
-            for (int i = 0; i < 8; ++i)
-                tools.push_back({"plane", random_plane(box_of(mesh), random)});
-            const RestCutReport report = cut_at_rest(mesh, tools, CutMode::split);
-            EXPECT_GE(report.pieces.size(), 8u);
-            EXPECT_LE(report.volume_error(), 1e-12);
-            EXPECT_GE(*report.stable_step_ratio(), body.step_after_eight);
-        }
-    }
+    for (const Body& body : bodies()) expect_steps_after_eight_planes(body, 5);
+    for (const Body& body : bodies_of_any_cells()) expect_steps_after_eight_planes(body, 1);
 }
 
 /// A sheet through the middle of a box, with waves of a twentieth of its size.
