@@ -68,6 +68,10 @@ struct HemlKernel {
     using Corners = std::array<Vec3, 4>;
     using Element = LinkElement;
     using Lanes = SimdHemlElements;
+    /// What a block stores of an element: only the inverse takes long to compute.
+    struct Stored {
+        Mat3 inverse_edges;
+    };
 
     Law law;
     double inversion_threshold;
@@ -78,6 +82,16 @@ struct HemlKernel {
     /// @param fibre  direction of the fibres at rest, of unit length; ignored by a law without
     ///               fibres
     Element precompute(const Corners& X, const Vec3& fibre = Vec3::Zero()) const;
+
+    Stored stored(const Element& e) const { return {e.inverse_edges}; }
+    /// Returns the element that precompute() gave.
+    /// @param X       corners at rest, m
+    /// @param volume  of the element, m3
+    /// @param fibre   of the element; zero for a law without fibres
+    Element restored(const Stored& stored, const Corners& X, double volume,
+                     const Vec3& fibre) const {
+        return {volume, squared_links(X), edge_matrix(X), stored.inverse_edges, fibre};
+    }
 
     /// Returns current over rest volume; negative for an inverted element.
     double volume_ratio(const Element& e, const Corners& x) const;
