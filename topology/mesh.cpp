@@ -151,9 +151,9 @@ void Mesh::append_element_row(CellKind kind, int region, std::span<const VertexI
     regions_.push_back(region);
     alive_.push_back(1);
     corners_.insert(corners_.end(), corners.begin(), corners.end());
-    corner_begin_.push_back(corners_.size());
+    corner_begin_.push_back(static_cast<std::uint32_t>(corners_.size()));
     neighbors_.resize(neighbors_.size() + static_cast<std::size_t>(traits(kind).num_faces));
-    face_begin_.push_back(neighbors_.size());
+    face_begin_.push_back(static_cast<std::uint32_t>(neighbors_.size()));
     inside_faces_.push_back(0);
     ++num_elements_;
 }
