@@ -121,7 +121,12 @@ ElementStore::ElementStore(const FragmentMesh& fragments, const topology::Mesh& 
     }
     for (std::size_t e = 0; e < fragments.element_capacity(); ++e)  // also if an edit removed it
         has_kind_[static_cast<std::size_t>(fragments.kind(ElementId(e)))] = true;
+    // Blocks are completed one after the other, so that few have lists of changes at a time.
+    std::size_t range = 0;
     for (const ElementId e : fragments.elements()) {
+        if (e.index() / ElementBlock::max_elements != range)
+            number_nodes(fragments.rest_positions());
+        range = e.index() / ElementBlock::max_elements;
         require_law(fragments, mesh, e);
         insert(fragments, e);
     }

@@ -221,7 +221,7 @@ class KernelBlock final : public ElementBlock {
     void insert(ElementId e, const ElementInput& input) override {
         const std::size_t s = add_slot(e, input.corners);
         const auto offset = static_cast<std::ptrdiff_t>(s);
-        row_of_.insert(row_of_.begin() + offset, static_cast<std::uint32_t>(rows_.size()));
+        row_of_.insert(row_of_.begin() + offset, static_cast<std::uint16_t>(rows_.size()));
         rows_.emplace_back();
         if (stores_fibres()) fibres_.emplace_back();
         volumes_.insert(volumes_.begin() + offset, 0.0);
@@ -238,7 +238,7 @@ class KernelBlock final : public ElementBlock {
     void erase(ElementId e) override {
         const std::size_t s = slot_of(e);
         // The last row replaces the erased one.
-        const auto last = static_cast<std::uint32_t>(rows_.size() - 1);
+        const auto last = static_cast<std::uint16_t>(rows_.size() - 1);
         rows_[row_of_[s]] = rows_[last];
         rows_.pop_back();
         if (stores_fibres()) {
@@ -264,10 +264,11 @@ class KernelBlock final : public ElementBlock {
                 rest_positions_[i] = rest_positions[nodes_[i]];
         }
         if constexpr (HasLanes<Kernel>)
-            update(lanes_, changed, [&](std::size_t s) { lanes_.set(s, rest(s), share(s)); });
+            update(lanes_, changed, [&](std::size_t s) { lanes_.set(s, for_lanes(s), share(s)); });
         if constexpr (HasMemoryLanes<Kernel>)
-            update(memory_lanes_, changed,
-                   [&](std::size_t s) { memory_lanes_.set(s, elements_[s], rest(s), share(s)); });
+            update(memory_lanes_, changed, [&](std::size_t s) {
+                memory_lanes_.set(s, elements_[s], for_lanes(s), share(s));
+            });
     }
 
   private:
@@ -312,10 +313,19 @@ class KernelBlock final : public ElementBlock {
     /// Returns the values of an element at rest, by value if they are restored.
     decltype(auto) rest(std::size_t s) const {
         if constexpr (IsRestored<Kernel>)
-            return kernel_.restored(row(s).rest, rest_corners(s), volumes_[s],
-                                    fibres_.empty() ? Vec3(Vec3::Zero()) : fibres_[row_of_[s]]);
+            return kernel_.restored(row(s).rest, rest_corners(s), volumes_[s], fibre(s));
         else
             return (row(s).rest);
+    }
+    /// Returns what the lanes need of rest().
+    decltype(auto) for_lanes(std::size_t s) const {
+        if constexpr (IsRestored<Kernel>)
+            return kernel_.for_lanes(row(s).rest, rest_corners(s), volumes_[s], fibre(s));
+        else
+            return (row(s).rest);
+    }
+    Vec3 fibre(std::size_t s) const {
+        return fibres_.empty() ? Vec3(Vec3::Zero()) : fibres_[row_of_[s]];
     }
     bool stores_fibres() const {
         if constexpr (IsRestored<Kernel>)
@@ -347,7 +357,7 @@ class KernelBlock final : public ElementBlock {
         Kernel in_doubles = kernel_;
         in_doubles.precision = Precision::double_precision;
         typename LanesOf<Kernel>::Type lanes;
-        fill(lanes, in_doubles, [&](std::size_t s) { lanes.set(s, rest(s), share(s)); });
+        fill(lanes, in_doubles, [&](std::size_t s) { lanes.set(s, for_lanes(s), share(s)); });
         return use(lanes);
     }
 
@@ -468,7 +478,7 @@ class KernelBlock final : public ElementBlock {
     Kernel kernel_;
     double density_;
     std::vector<Row> rows_;              // in no order
-    std::vector<std::uint32_t> row_of_;  // by slot
+    std::vector<std::uint16_t> row_of_;  // by slot
     std::vector<double> volumes_;        // by slot, of the whole element at rest, m3
     std::vector<double> shares_;         // by slot; empty if all elements are whole
     std::vector<Vec3> fibres_;           // by row, of restored elements; see stores_fibres()
