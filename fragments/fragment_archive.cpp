@@ -19,7 +19,7 @@ using topology::traits;
 class FragmentArchive {
   public:
     static void list(auto& ar, auto& f) {
-        ar(f.light_share_, f.num_origins_, f.kinds_, f.diagonals_, f.regions_, f.carriers_,
+        ar(f.light_share_, f.num_origins_, f.kinds_, f.diagonals_, f.regions_, f.carriers_of_added_,
            f.is_alive_, f.shares_, f.corners_, f.origins_, f.rest_positions_, f.is_node_alive_,
            f.carrier_of_cell_, f.fragment_of_cell_, f.carried_around_, f.is_constrained_);
     }
@@ -49,11 +49,11 @@ class FragmentArchive {
 
     void require_lists() const {
         const FragmentMesh& f = fragments_;
-        const std::size_t num_carriers = f.kinds_.size(), num_fragments = f.carriers_.size(),
+        const std::size_t num_carriers = f.kinds_.size(), num_fragments = f.is_alive_.size(),
                           num_nodes = f.origins_.size();
         require(f.num_origins_ <= num_nodes && f.regions_.size() == num_carriers &&
                     (f.diagonals_.empty() || f.diagonals_.size() == num_carriers) &&
-                    num_fragments >= num_carriers && f.is_alive_.size() == num_fragments &&
+                    num_fragments == num_carriers + f.carriers_of_added_.size() &&
                     f.rest_positions_.size() == num_nodes && f.is_node_alive_.size() == num_nodes &&
                     f.is_constrained_.size() == material_.node_capacity() &&
                     f.carrier_of_cell_.size() == material_.element_capacity() &&
@@ -74,7 +74,7 @@ class FragmentArchive {
             std::ranges::all_of(
                 f.kinds_,
                 [](CellKind kind) { return static_cast<std::size_t>(kind) < num_cell_kinds; }) &&
-                have_diagonals() && std::ranges::all_of(f.carriers_, is_carrier) &&
+                have_diagonals() && std::ranges::all_of(f.carriers_of_added_, is_carrier) &&
                 std::ranges::all_of(f.carrier_of_cell_, is_carrier) &&
                 std::ranges::all_of(f.fragment_of_cell_, is_fragment) &&
                 std::ranges::all_of(f.carried_around_, is_cell) &&
@@ -96,10 +96,8 @@ class FragmentArchive {
 
     void restore_rows() {
         FragmentMesh& f = fragments_;
-        for (std::size_t c = 0; c < f.kinds_.size(); ++c)
-            require(f.carriers_[c] == CarrierId(c), "a carrier without a fragment of its number");
-        for (const CarrierId carrier : f.carriers_) {
-            const int num_corners = traits(f.kind_of(carrier)).num_corners;
+        for (std::size_t e = 0; e < f.element_capacity(); ++e) {
+            const int num_corners = traits(f.kind(ElementId(e))).num_corners;
             f.corner_begin_.push_back(f.corner_begin_.back() +
                                       static_cast<std::uint32_t>(num_corners));
         }
@@ -110,7 +108,7 @@ class FragmentArchive {
     void restore_lists_of_cells() {
         FragmentMesh& f = fragments_;
         std::vector<std::vector<CellId>> of_carrier(f.kinds_.size()),
-            of_fragment(f.carriers_.size());
+            of_fragment(f.element_capacity());
         std::vector<std::vector<ElementId>> fragments_of(f.kinds_.size());
         for (const CellId cell : material_.elements()) {
             require(f.fragment_of_cell(cell).is_valid(), "a cell without a fragment");

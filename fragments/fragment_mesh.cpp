@@ -63,7 +63,7 @@ FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<c
     for (const auto& corners : source.corners)
         first_corner.push_back(first_corner.back() + corners.size());
     std::vector<CarrierId> carrier_of_row(source.corners.size());
-    topology::reserve_with_room(material.element_capacity(), kinds_, regions_, carriers_, is_alive_,
+    topology::reserve_with_room(material.element_capacity(), kinds_, regions_, is_alive_,
                                 corner_begin_, carrier_of_cell_, fragment_of_cell_);
     topology::reserve_with_room(material.connectivity().corners.size(), corners_);
     for (std::size_t i = 0; i < material.element_capacity(); ++i) {
@@ -100,7 +100,6 @@ FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<c
         regions_.push_back(material.region(cell));
         corners_.insert(corners_.end(), corners.begin(), corners.end());
         corner_begin_.push_back(static_cast<std::uint32_t>(corners_.size()));
-        carriers_.emplace_back(i);
         is_alive_.push_back(material.is_alive(cell) && carrier == CarrierId(i) ? 1 : 0);
         carrier_of_cell_.push_back(carrier);
         fragment_of_cell_.push_back(with_number_of<ElementId>(carrier));
@@ -145,9 +144,17 @@ void FragmentMesh::complete() {
     num_nodes_ = static_cast<std::size_t>(std::ranges::count(is_node_alive_, 1));
     num_elements_ = static_cast<std::size_t>(std::ranges::count(is_alive_, 1));
     std::vector<std::uint32_t> end(num_origins_ + 1, 0);  // of the list of each node
-    for (std::size_t i = 0; i < kinds_.size(); ++i)
-        if (!was_never_alive(CarrierId(i)))
-            for (const NodeId n : origins_of(CarrierId(i))) ++end[n.index() + 1];
+    volumes_.reserve(kinds_.size());
+    for (std::size_t i = 0; i < kinds_.size(); ++i) {
+        const CarrierId carrier(i);
+        const CornerNodes origins = origins_of(carrier);
+        std::array<Vec3, max_corners> x;
+        for (std::size_t k = 0; k < origins.size(); ++k) x[k] = rest_position(origins[k]);
+        volumes_.push_back(volume_of_cell(kind_of(carrier), std::span(x).first(origins.size()),
+                                          diagonals_of(carrier)));
+        if (!was_never_alive(carrier))
+            for (const NodeId n : origins) ++end[n.index() + 1];
+    }
     for (std::size_t i = 0; i < num_origins_; ++i) end[i + 1] += end[i];
     carrier_begin_ = end;
     carriers_at_.resize(end.back());
@@ -230,7 +237,7 @@ void FragmentMesh::go_back(const Mesh& material, const FragmentChanges& back) {
     std::vector<CarrierId> touched;
     for (const ElementId e : changed) {
         if (!e.is_valid()) continue;
-        touched.push_back(carriers_[e.index()]);
+        touched.push_back(carrier(e));
         if (!is_alive(e)) part_shares_.erase(e);
     }
     std::ranges::sort(touched);
@@ -242,8 +249,8 @@ void FragmentMesh::go_back(const Mesh& material, const FragmentChanges& back) {
 
 void FragmentMesh::truncate(std::size_t num_nodes, std::size_t num_elements,
                             std::size_t num_cells) {
-    for (std::size_t e = num_elements; e < carriers_.size(); ++e) shares_.erase(ElementId(e));
-    carriers_.resize(num_elements);
+    for (std::size_t e = num_elements; e < element_capacity(); ++e) shares_.erase(ElementId(e));
+    carriers_of_added_.resize(num_elements - kinds_.size());
     is_alive_.resize(num_elements);
     corner_begin_.resize(num_elements + 1);
     corners_.resize(corner_begin_.back());
@@ -378,14 +385,6 @@ CornerNodes FragmentMesh::origins_of(CarrierId carrier) const {
     for (const NodeId n : corners(with_number_of<ElementId>(carrier)))
         origins.push_back(origins_[n.index()]);
     return origins;
-}
-
-double FragmentMesh::volume_of(CarrierId carrier) const {
-    std::array<Vec3, max_corners> x;
-    const CornerNodes origins = origins_of(carrier);
-    for (std::size_t k = 0; k < origins.size(); ++k) x[k] = rest_position(origins[k]);
-    return volume_of_cell(kind_of(carrier), std::span(x).first(origins.size()),
-                          diagonals_of(carrier));
 }
 
 std::span<const CarrierId> FragmentMesh::carriers_at(NodeId origin) const {

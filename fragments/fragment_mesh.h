@@ -73,7 +73,7 @@ class FragmentMesh {
     /// Returns the epoch of the material that the fragments are those of.
     std::uint64_t epoch() const { return epoch_.value(); }
     std::size_t node_capacity() const { return origins_.size(); }
-    std::size_t element_capacity() const { return carriers_.size(); }
+    std::size_t element_capacity() const { return is_alive_.size(); }
     bool is_alive(NodeId n) const { return is_node_alive_[n.index()] != 0; }
     bool is_alive(ElementId e) const { return is_alive_[e.index()] != 0; }
     std::size_t num_nodes() const { return num_nodes_; }
@@ -83,10 +83,10 @@ class FragmentMesh {
         return {*this, element_capacity()};
     }
 
-    topology::CellKind kind(ElementId e) const { return kinds_[carriers_[e.index()].index()]; }
-    int region(ElementId e) const { return regions_[carriers_[e.index()].index()]; }
+    topology::CellKind kind(ElementId e) const { return kind_of(carrier(e)); }
+    int region(ElementId e) const { return region_of_carrier(carrier(e)); }
     /// Returns the diagonals that divide quadrilaterals of the carrier, since they meet triangles.
-    topology::Diagonals diagonals(ElementId e) const { return diagonals_of(carriers_[e.index()]); }
+    topology::Diagonals diagonals(ElementId e) const { return diagonals_of(carrier(e)); }
     /// Returns the corners in the order of cell_kind.h. A dead fragment keeps its last corners.
     std::span<const NodeId> corners(ElementId e) const {
         return {corners_.data() + corner_begin_[e.index()],
@@ -119,7 +119,7 @@ class FragmentMesh {
         return it == part_shares_.end() ? std::span<const double>() : it->second;
     }
     /// Returns the volume of the carrier at rest, m3.
-    double carrier_volume(ElementId e) const { return volume_of(carriers_[e.index()]); }
+    double carrier_volume(ElementId e) const { return volume_of(carrier(e)); }
     /// Returns the volume of the material that the fragment carries, at rest, m3.
     double volume(ElementId e) const { return volume_share(e) * carrier_volume(e); }
     const Vec3& rest_position(NodeId n) const { return rest_positions_[n.index()]; }
@@ -137,7 +137,11 @@ class FragmentMesh {
 
     /// Returns the carrier of a fragment: the element that the body had before any cut. A carrier
     /// of the source has the id of its lowest cell.
-    CarrierId carrier(ElementId e) const { return carriers_[e.index()]; }
+    CarrierId carrier(ElementId e) const {
+        const std::size_t num_carriers = kinds_.size();
+        return e.index() < num_carriers ? with_number_of<CarrierId>(e)
+                                        : carriers_of_added_[e.index() - num_carriers];
+    }
     /// Returns the kind of a carrier.
     topology::Diagonals diagonals_of(CarrierId carrier) const {
         return diagonals_.empty() ? topology::Diagonals() : diagonals_[carrier.index()];
@@ -154,7 +158,7 @@ class FragmentMesh {
     }
     /// True if a cell belongs to the carrier of the fragment that carries it.
     bool is_at_home(CellId cell) const {
-        return carriers_[fragment_of_cell(cell).index()] == carrier_of_cell(cell);
+        return carrier(fragment_of_cell(cell)) == carrier_of_cell(cell);
     }
     /// True if a fragment of its own carrier carries the cell as one of a light part: by way of
     /// other carriers, around a cut. Such a part gives the fragment no connections at nodes.
@@ -251,7 +255,7 @@ class FragmentMesh {
     }
     int region_of_carrier(CarrierId carrier) const { return regions_[carrier.index()]; }
     /// Returns the volume of a carrier at rest, m3.
-    double volume_of(CarrierId carrier) const;
+    double volume_of(CarrierId carrier) const { return volumes_[carrier.index()]; }
     std::span<const CarrierId> carriers_at(NodeId origin) const;
 
     double light_share_;
@@ -263,13 +267,14 @@ class FragmentMesh {
     std::vector<topology::CellKind> kinds_;
     std::vector<topology::Diagonals> diagonals_;  // empty if there are none
     std::vector<int> regions_;
+    std::vector<double> volumes_;  // at rest, m3
     // By node before any cut: the carriers at it, in ascending order.
     std::vector<std::uint32_t> carrier_begin_;
     std::vector<CarrierId> carriers_at_;
 
-    // By fragment. The first ones have the numbers of the carriers, and keep their corners, or
-    // copies of them: the origins of these are those of the carrier.
-    std::vector<CarrierId> carriers_;
+    // By fragment. The first ones are those of the carriers with their numbers, and keep their
+    // corners, or copies of them: the origins of these are those of the carrier.
+    std::vector<CarrierId> carriers_of_added_;  // of the later ones
     std::vector<std::uint8_t> is_alive_;
     std::unordered_map<ElementId, double> shares_;                    // those that are not 1
     std::unordered_map<ElementId, std::vector<double>> part_shares_;  // see part_shares()

@@ -110,7 +110,7 @@ void FragmentUpdate::follow_cells() {
 ElementId FragmentUpdate::add_fragment(CellId cell) {
     const CarrierId carrier = fragments_.carrier_of_cell(cell);
     const ElementId e(fragments_.element_capacity());
-    fragments_.carriers_.push_back(carrier);
+    fragments_.carriers_of_added_.push_back(carrier);
     fragments_.is_alive_.push_back(1);
     fragments_.set_share(e, 0.0);  // until update_shares()
     const auto origins = fragments_.origins_of(carrier);

@@ -226,7 +226,10 @@ double rest_volume(const Mesh& mesh, CellId e) {
     return signed_volume(mesh.kind(e), {x.data(), corners.size()});
 }
 
-Components components(const Mesh& mesh) {
+namespace {
+
+/// Returns the sets of elements that are joined through faces.
+DisjointSet joined_elements(const Mesh& mesh) {
     DisjointSet groups(mesh.element_capacity());
     for (const CellId e : mesh.elements()) {
         std::int32_t own = e.value;
@@ -235,6 +238,19 @@ Components components(const Mesh& mesh) {
             if (other.is_valid() && other < e) own = groups.join(own, other.value);
         }
     }
+    return groups;
+}
+
+}  // namespace
+
+int num_components(const Mesh& mesh) {
+    DisjointSet groups = joined_elements(mesh);
+    return static_cast<int>(std::ranges::count_if(
+        mesh.elements(), [&](CellId e) { return groups.find(e.value) == e.value; }));
+}
+
+Components components(const Mesh& mesh) {
+    DisjointSet groups = joined_elements(mesh);
     Components result;
     result.of_element.assign(mesh.element_capacity(), -1);
     for (const CellId e : mesh.elements()) {
