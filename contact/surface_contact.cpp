@@ -46,8 +46,8 @@ constexpr double rounding = 1e-10;
 }  // namespace
 
 void add_shares(const physics::Model& model, VertexId n, double weight, ContactSolver& solver) {
-    model.structure().embedding()[n].for_each(
-        [&](NodeId node, double share) { solver.add_weight(node, weight * share); });
+    model.structure().embedding().for_each(
+        n, [&](NodeId node, double share) { solver.add_weight(node, weight * share); });
 }
 
 void add_surface_weights(const physics::Model& model, const ContactSolver::OnSurface& at,

@@ -9,7 +9,7 @@ namespace incise::fragments {
 using topology::Mesh;
 
 Embedding::Embedding(const Mesh& mesh, const FragmentMesh& fragments)
-    : of_vertex_(mesh.node_capacity()) {
+    : node_of_vertex_(mesh.node_capacity()) {
     for (const VertexId v : mesh.nodes()) find(mesh, fragments, v);
 }
 
@@ -26,12 +26,17 @@ double gain(const EmbeddedPoint& at) {
 }  // namespace
 
 void Embedding::set(VertexId v, const EmbeddedPoint& at) {
-    EmbeddedPoint& known = of_vertex_[v.index()];
-    num_embedded_ -= is_embedded(v.index()) ? 1 : 0;
-    if (const double before = gain(known); before > 1.0) gains_.erase(gains_.find(before));
-    known = at;
-    if (const double now = gain(known); now > 1.0) gains_.insert(now);
-    num_embedded_ += is_embedded(v.index()) ? 1 : 0;
+    num_embedded_ -= is_embedded(v) ? 1 : 0;
+    if (combinations_.contains(v))
+        if (const double before = gain(combinations_.at(v)); before > 1.0)
+            gains_.erase(gains_.find(before));
+    node_of_vertex_[v.index()] = at.count == 1 ? at.nodes[0] : NodeId();
+    if (at.count > 1)
+        combinations_[v] = at;
+    else
+        combinations_.erase(v);
+    if (const double now = gain(at); now > 1.0) gains_.insert(now);
+    num_embedded_ += is_embedded(v) ? 1 : 0;
 }
 
 void Embedding::find(const Mesh& mesh, const FragmentMesh& fragments, VertexId v) {
@@ -41,8 +46,9 @@ void Embedding::find(const Mesh& mesh, const FragmentMesh& fragments, VertexId v
 void Embedding::apply(const Mesh& mesh, const FragmentMesh& fragments,
                       std::span<const VertexId> touched_of_mesh, const FragmentChanges& changes) {
     positions_.version = velocities_.version = 0;
-    for (std::size_t v = mesh.node_capacity(); v < of_vertex_.size(); ++v) set(VertexId(v), {});
-    of_vertex_.resize(mesh.node_capacity());
+    for (std::size_t v = mesh.node_capacity(); v < node_of_vertex_.size(); ++v)
+        set(VertexId(v), {});
+    node_of_vertex_.resize(mesh.node_capacity());
     std::vector<VertexId> touched(touched_of_mesh.begin(), touched_of_mesh.end());
     const auto touch = [&](CellId cell) {
         const auto corners = mesh.corners(cell);
@@ -58,7 +64,7 @@ void Embedding::apply(const Mesh& mesh, const FragmentMesh& fragments,
     std::sort(touched.begin(), touched.end());
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
     for (const VertexId v : touched)
-        if (v.index() < of_vertex_.size()) find(mesh, fragments, v);
+        if (v.index() < node_of_vertex_.size()) find(mesh, fragments, v);
 }
 
 std::span<const Vec3> Embedding::interpolated(std::span<const Vec3> of_nodes, std::uint64_t version,
@@ -66,9 +72,13 @@ std::span<const Vec3> Embedding::interpolated(std::span<const Vec3> of_nodes, st
     if (is_trivial()) return of_nodes;
     if (known.version == version) return known.values;
     known.version = version;
-    known.values.resize(of_vertex_.size());
-    for (std::size_t v = 0; v < of_vertex_.size(); ++v)
-        known.values[v] = of_vertex_[v].value(of_nodes);
+    known.values.resize(node_of_vertex_.size());
+    for (std::size_t v = 0; v < node_of_vertex_.size(); ++v) {
+        const NodeId n = node_of_vertex_[v];
+        known.values[v] = n.is_valid() ? of_nodes[n.index()] : Vec3(Vec3::Zero());
+    }
+    combinations_.for_each(
+        [&](VertexId v, const EmbeddedPoint& at) { known.values[v.index()] = at.value(of_nodes); });
     return known.values;
 }
 

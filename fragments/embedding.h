@@ -13,6 +13,7 @@
 #include "incise/fragments/fragment_changes.h"
 #include "incise/fragments/fragment_mesh.h"
 #include "incise/topology/cell_point.h"
+#include "incise/topology/id_map.h"
 #include "incise/topology/mesh.h"
 
 namespace incise::fragments {
@@ -34,14 +35,20 @@ class Embedding {
     void apply(const topology::Mesh& mesh, const FragmentMesh& fragments,
                std::span<const VertexId> touched, const FragmentChanges& changes);
 
-    /// Returns the combination that a living vertex follows.
-    const EmbeddedPoint& operator[](VertexId v) const { return of_vertex_[v.index()]; }
+    /// Calls visit(node, weight) for each node that a living vertex follows: see EmbeddedPoint.
+    template <class Visit>
+    void for_each(VertexId v, Visit visit) const {
+        if (node_of_vertex_[v.index()].is_valid())
+            visit(node_of_vertex_[v.index()], 1.0);
+        else if (combinations_.contains(v))
+            combinations_.at(v).for_each(visit);
+    }
     /// Calls visit(node, weight) for the nodes that a point in a cell follows; for some of them
     /// more than once.
     template <class Visit>
     void for_each(const topology::CellPoint& at, Visit visit) const {
         at.for_each([&](VertexId v, double of_vertex) {
-            (*this)[v].for_each([&](NodeId n, double weight) { visit(n, of_vertex * weight); });
+            for_each(v, [&](NodeId n, double weight) { visit(n, of_vertex * weight); });
         });
     }
     /// True if each vertex is the node with the same number, as before any division. Positions and
@@ -68,14 +75,15 @@ class Embedding {
     };
     void set(VertexId v, const EmbeddedPoint& at);
     void find(const topology::Mesh& mesh, const FragmentMesh& fragments, VertexId v);
-    bool is_embedded(std::size_t v) const {
-        const EmbeddedPoint& at = of_vertex_[v];
-        return at.count > 1 || (at.count == 1 && at.nodes[0] != NodeId(v));
+    bool is_embedded(VertexId v) const {
+        const NodeId n = node_of_vertex_[v.index()];
+        return n.is_valid() ? n != with_number_of<NodeId>(v) : combinations_.contains(v);
     }
     std::span<const Vec3> interpolated(std::span<const Vec3> of_nodes, std::uint64_t version,
                                        Values& known) const;
 
-    std::vector<EmbeddedPoint> of_vertex_;
+    std::vector<NodeId> node_of_vertex_;  // of a vertex that follows one node, else invalid
+    topology::IdMap<VertexId, EmbeddedPoint> combinations_;  // of those that follow several
     std::size_t num_embedded_ = 0;  // vertices that are not the node with the same number
     std::multiset<double> gains_;   // of the present vertices, those above 1
     mutable Values positions_, velocities_;

@@ -19,10 +19,9 @@ using topology::traits;
 class FragmentArchive {
   public:
     static void list(auto& ar, auto& f) {
-        ar(f.light_share_, f.num_origins_, f.kinds_, f.diagonals_, f.regions_,
-           f.origins_of_carrier_, f.carriers_, f.is_alive_, f.shares_, f.corners_, f.origins_,
-           f.rest_positions_, f.is_node_alive_, f.carrier_of_cell_, f.fragment_of_cell_,
-           f.carried_around_, f.is_constrained_);
+        ar(f.light_share_, f.num_origins_, f.kinds_, f.diagonals_, f.regions_, f.carriers_of_added_,
+           f.is_alive_, f.shares_, f.corners_, f.origins_, f.rest_positions_, f.is_node_alive_,
+           f.carrier_of_cell_, f.fragment_of_cell_, f.carried_around_, f.is_constrained_);
     }
 
     static FragmentMesh load(const Mesh& material, ArchiveReader& ar) {
@@ -50,13 +49,12 @@ class FragmentArchive {
 
     void require_lists() const {
         const FragmentMesh& f = fragments_;
-        const std::size_t num_carriers = f.kinds_.size(), num_fragments = f.carriers_.size(),
+        const std::size_t num_carriers = f.kinds_.size(), num_fragments = f.is_alive_.size(),
                           num_nodes = f.origins_.size();
         require(f.num_origins_ <= num_nodes && f.regions_.size() == num_carriers &&
                     (f.diagonals_.empty() || f.diagonals_.size() == num_carriers) &&
-                    num_fragments >= num_carriers && f.is_alive_.size() == num_fragments &&
-                    f.shares_.size() == num_fragments && f.rest_positions_.size() == num_nodes &&
-                    f.is_node_alive_.size() == num_nodes &&
+                    num_fragments == num_carriers + f.carriers_of_added_.size() &&
+                    f.rest_positions_.size() == num_nodes && f.is_node_alive_.size() == num_nodes &&
                     f.is_constrained_.size() == material_.node_capacity() &&
                     f.carrier_of_cell_.size() == material_.element_capacity() &&
                     f.fragment_of_cell_.size() == material_.element_capacity(),
@@ -76,11 +74,13 @@ class FragmentArchive {
             std::ranges::all_of(
                 f.kinds_,
                 [](CellKind kind) { return static_cast<std::size_t>(kind) < num_cell_kinds; }) &&
-                have_diagonals() && std::ranges::all_of(f.carriers_, is_carrier) &&
+                have_diagonals() && std::ranges::all_of(f.carriers_of_added_, is_carrier) &&
                 std::ranges::all_of(f.carrier_of_cell_, is_carrier) &&
                 std::ranges::all_of(f.fragment_of_cell_, is_fragment) &&
                 std::ranges::all_of(f.carried_around_, is_cell) &&
-                std::ranges::all_of(f.origins_of_carrier_, is_origin) &&
+                std::ranges::all_of(
+                    f.shares_,
+                    [&](const auto& of) { return of.first.is_valid() && is_fragment(of.first); }) &&
                 std::ranges::all_of(f.corners_, is_node) &&
                 std::ranges::all_of(f.origins_, is_origin) &&
                 std::ranges::all_of(f.rest_positions_, [](const Vec3& x) { return x.allFinite(); }),
@@ -96,12 +96,11 @@ class FragmentArchive {
 
     void restore_rows() {
         FragmentMesh& f = fragments_;
-        for (const CellKind kind : f.kinds_)
-            f.origin_begin_.push_back(f.origin_begin_.back() +
-                                      static_cast<std::size_t>(traits(kind).num_corners));
-        require(f.origins_of_carrier_.size() == f.origin_begin_.back(), "lists of origins");
-        for (const CarrierId carrier : f.carriers_)
-            f.corner_begin_.push_back(f.corner_begin_.back() + f.origins_of(carrier).size());
+        for (std::size_t e = 0; e < f.element_capacity(); ++e) {
+            const int num_corners = traits(f.kind(ElementId(e))).num_corners;
+            f.corner_begin_.push_back(f.corner_begin_.back() +
+                                      static_cast<std::uint32_t>(num_corners));
+        }
         require(f.corners_.size() == f.corner_begin_.back(), "lists of corners");
         f.complete();
     }
@@ -109,7 +108,7 @@ class FragmentArchive {
     void restore_lists_of_cells() {
         FragmentMesh& f = fragments_;
         std::vector<std::vector<CellId>> of_carrier(f.kinds_.size()),
-            of_fragment(f.carriers_.size());
+            of_fragment(f.element_capacity());
         std::vector<std::vector<ElementId>> fragments_of(f.kinds_.size());
         for (const CellId cell : material_.elements()) {
             require(f.fragment_of_cell(cell).is_valid(), "a cell without a fragment");

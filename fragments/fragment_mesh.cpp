@@ -63,6 +63,9 @@ FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<c
     for (const auto& corners : source.corners)
         first_corner.push_back(first_corner.back() + corners.size());
     std::vector<CarrierId> carrier_of_row(source.corners.size());
+    topology::reserve_with_room(material.element_capacity(), kinds_, regions_, is_alive_,
+                                corner_begin_, carrier_of_cell_, fragment_of_cell_);
+    topology::reserve_with_room(material.connectivity().corners.size(), corners_);
     for (std::size_t i = 0; i < material.element_capacity(); ++i) {
         const CellId cell(i);
         CarrierId carrier(i);
@@ -95,16 +98,12 @@ FragmentMesh::FragmentMesh(const Mesh& material, double light_share, std::span<c
         }
         kinds_.push_back(kind);
         regions_.push_back(material.region(cell));
-        for (const NodeId n : corners) origins_of_carrier_.push_back(origins_[n.index()]);
         corners_.insert(corners_.end(), corners.begin(), corners.end());
-        origin_begin_.push_back(origins_of_carrier_.size());
-        carriers_.emplace_back(i);
+        corner_begin_.push_back(static_cast<std::uint32_t>(corners_.size()));
         is_alive_.push_back(material.is_alive(cell) && carrier == CarrierId(i) ? 1 : 0);
-        shares_.push_back(1.0);
         carrier_of_cell_.push_back(carrier);
         fragment_of_cell_.push_back(with_number_of<ElementId>(carrier));
     }
-    corner_begin_ = origin_begin_;
     is_node_alive_.assign(rest_positions_.size(), 0);
     for (std::size_t i = 0; i < is_alive_.size(); ++i)
         if (is_alive_[i] != 0)
@@ -144,17 +143,17 @@ std::vector<NodeId> FragmentMesh::add_nodes(const Mesh& material) {
 void FragmentMesh::complete() {
     num_nodes_ = static_cast<std::size_t>(std::ranges::count(is_node_alive_, 1));
     num_elements_ = static_cast<std::size_t>(std::ranges::count(is_alive_, 1));
-    first_part_.assign(kinds_.size(), -1);
-    part_of_cell_.assign(carrier_of_cell_.size(), -1);
-    std::vector<std::size_t> end(num_origins_ + 1, 0);  // of the list of each node
-    std::vector<Vec3> x;
+    std::vector<std::uint32_t> end(num_origins_ + 1, 0);  // of the list of each node
+    volumes_.reserve(kinds_.size());
     for (std::size_t i = 0; i < kinds_.size(); ++i) {
-        x.clear();
-        for (const NodeId n : origins_of(CarrierId(i))) {
-            x.push_back(rest_position(n));
-            if (!was_never_alive(CarrierId(i))) ++end[n.index() + 1];
-        }
-        volumes_.push_back(volume_of_cell(kinds_[i], x, diagonals_of(CarrierId(i))));
+        const CarrierId carrier(i);
+        const CornerNodes origins = origins_of(carrier);
+        std::array<Vec3, max_corners> x;
+        for (std::size_t k = 0; k < origins.size(); ++k) x[k] = rest_position(origins[k]);
+        volumes_.push_back(volume_of_cell(kind_of(carrier), std::span(x).first(origins.size()),
+                                          diagonals_of(carrier)));
+        if (!was_never_alive(carrier))
+            for (const NodeId n : origins) ++end[n.index() + 1];
     }
     for (std::size_t i = 0; i < num_origins_; ++i) end[i + 1] += end[i];
     carrier_begin_ = end;
@@ -211,7 +210,7 @@ void FragmentMesh::go_back(const Mesh& material, const FragmentChanges& back) {
                  static_cast<std::size_t>(rewiring.corner)] = rewiring.to;
     for (const auto& record : edit.elements_added) is_alive_[record.id.index()] = 1;
     for (const auto& record : edit.elements_removed) is_alive_[record.id.index()] = 0;
-    for (const ShareChange& share : back.shares) shares_[share.fragment.index()] = share.to;
+    for (const ShareChange& share : back.shares) set_share(share.fragment, share.to);
     for (const auto& record : edit.nodes_added) is_node_alive_[record.id.index()] = 1;
     for (const CarriedCell& cell : back.cells) {
         move_cell(cell.cell, cell.from, cell.to);
@@ -238,7 +237,7 @@ void FragmentMesh::go_back(const Mesh& material, const FragmentChanges& back) {
     std::vector<CarrierId> touched;
     for (const ElementId e : changed) {
         if (!e.is_valid()) continue;
-        touched.push_back(carriers_[e.index()]);
+        touched.push_back(carrier(e));
         if (!is_alive(e)) part_shares_.erase(e);
     }
     std::ranges::sort(touched);
@@ -250,9 +249,9 @@ void FragmentMesh::go_back(const Mesh& material, const FragmentChanges& back) {
 
 void FragmentMesh::truncate(std::size_t num_nodes, std::size_t num_elements,
                             std::size_t num_cells) {
-    carriers_.resize(num_elements);
+    for (std::size_t e = num_elements; e < element_capacity(); ++e) shares_.erase(ElementId(e));
+    carriers_of_added_.resize(num_elements - kinds_.size());
     is_alive_.resize(num_elements);
-    shares_.resize(num_elements);
     corner_begin_.resize(num_elements + 1);
     corners_.resize(corner_begin_.back());
     origins_.resize(num_nodes);
@@ -260,7 +259,6 @@ void FragmentMesh::truncate(std::size_t num_nodes, std::size_t num_elements,
     is_node_alive_.resize(num_nodes);
     carrier_of_cell_.resize(num_cells);
     fragment_of_cell_.resize(num_cells);
-    part_of_cell_.resize(num_cells, -1);
 }
 
 void FragmentMesh::move_cell(CellId cell, ElementId from, ElementId to) {
@@ -299,7 +297,7 @@ FragmentMesh::PartSharesUpdate FragmentMesh::update_part_shares(const Mesh& mate
     for (const CellId cell : cells_of_carrier(carrier))
         if (material.is_alive(cell) && !is_own(cell)) parts.back().push_back(cell);
 
-    const double whole = volumes_[carrier.index()];
+    const double whole = volume_of(carrier);
     constexpr double rounding = 1e-10;  // as FragmentParts::share_of
     double filled = 0.0;
     std::vector<double> volumes;  // by part, m3
@@ -348,7 +346,7 @@ FragmentMesh::PartSharesUpdate FragmentMesh::update_part_shares(const Mesh& mate
             const double own = volume_of(fractions[p]);
             const bool differs = fit && std::abs(own - volumes[p]) > rounding * whole;
             update.has_overlaps |= differs;
-            shares_[e.index()] = ((differs ? own : volumes[p]) + others) / whole;
+            set_share(e, ((differs ? own : volumes[p]) + others) / whole);
         }
         // What it carries of others is in all tetrahedra alike: if an edit then divides the
         // fragment, that stays where it is.
@@ -382,9 +380,11 @@ int FragmentMesh::corner_of(ElementId e, NodeId n) const {
     return it == nodes.end() ? -1 : static_cast<int>(it - nodes.begin());
 }
 
-std::span<const NodeId> FragmentMesh::origins_of(CarrierId carrier) const {
-    return {origins_of_carrier_.data() + origin_begin_[carrier.index()],
-            origin_begin_[carrier.index() + 1] - origin_begin_[carrier.index()]};
+CornerNodes FragmentMesh::origins_of(CarrierId carrier) const {
+    CornerNodes origins;
+    for (const NodeId n : corners(with_number_of<ElementId>(carrier)))
+        origins.push_back(origins_[n.index()]);
+    return origins;
 }
 
 std::span<const CarrierId> FragmentMesh::carriers_at(NodeId origin) const {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "incise/base/types.h"
+#include "incise/fragments/corner_nodes.h"
 #include "incise/fragments/embedded_point.h"
 #include "incise/fragments/fragment_changes.h"
 #include "incise/fragments/list_or_one.h"
@@ -72,7 +73,7 @@ class FragmentMesh {
     /// Returns the epoch of the material that the fragments are those of.
     std::uint64_t epoch() const { return epoch_.value(); }
     std::size_t node_capacity() const { return origins_.size(); }
-    std::size_t element_capacity() const { return carriers_.size(); }
+    std::size_t element_capacity() const { return is_alive_.size(); }
     bool is_alive(NodeId n) const { return is_node_alive_[n.index()] != 0; }
     bool is_alive(ElementId e) const { return is_alive_[e.index()] != 0; }
     std::size_t num_nodes() const { return num_nodes_; }
@@ -82,10 +83,10 @@ class FragmentMesh {
         return {*this, element_capacity()};
     }
 
-    topology::CellKind kind(ElementId e) const { return kinds_[carriers_[e.index()].index()]; }
-    int region(ElementId e) const { return regions_[carriers_[e.index()].index()]; }
+    topology::CellKind kind(ElementId e) const { return kind_of(carrier(e)); }
+    int region(ElementId e) const { return region_of_carrier(carrier(e)); }
     /// Returns the diagonals that divide quadrilaterals of the carrier, since they meet triangles.
-    topology::Diagonals diagonals(ElementId e) const { return diagonals_of(carriers_[e.index()]); }
+    topology::Diagonals diagonals(ElementId e) const { return diagonals_of(carrier(e)); }
     /// Returns the corners in the order of cell_kind.h. A dead fragment keeps its last corners.
     std::span<const NodeId> corners(ElementId e) const {
         return {corners_.data() + corner_begin_[e.index()],
@@ -103,7 +104,10 @@ class FragmentMesh {
     /// Returns the volume that the fragment carries over that of its carrier. It is exactly 1 for a
     /// carrier that is whole, or cut in part. It exceeds 1 if cells of others outweigh those that
     /// are missing.
-    double volume_share(ElementId e) const { return shares_[e.index()]; }
+    double volume_share(ElementId e) const {
+        const auto it = shares_.find(e);
+        return it == shares_.end() ? 1.0 : it->second;
+    }
     /// Returns by tetrahedron of CentreDivision how much of it the fragment has. The tetrahedra of
     /// the carrier, times their shares, have the volume of the fragment, unless a cut with bends
     /// below the size of a cell has left parts that reach into each other. What the fragment
@@ -115,7 +119,7 @@ class FragmentMesh {
         return it == part_shares_.end() ? std::span<const double>() : it->second;
     }
     /// Returns the volume of the carrier at rest, m3.
-    double carrier_volume(ElementId e) const { return volumes_[carriers_[e.index()].index()]; }
+    double carrier_volume(ElementId e) const { return volume_of(carrier(e)); }
     /// Returns the volume of the material that the fragment carries, at rest, m3.
     double volume(ElementId e) const { return volume_share(e) * carrier_volume(e); }
     const Vec3& rest_position(NodeId n) const { return rest_positions_[n.index()]; }
@@ -133,7 +137,11 @@ class FragmentMesh {
 
     /// Returns the carrier of a fragment: the element that the body had before any cut. A carrier
     /// of the source has the id of its lowest cell.
-    CarrierId carrier(ElementId e) const { return carriers_[e.index()]; }
+    CarrierId carrier(ElementId e) const {
+        const std::size_t num_carriers = kinds_.size();
+        return e.index() < num_carriers ? with_number_of<CarrierId>(e)
+                                        : carriers_of_added_[e.index() - num_carriers];
+    }
     /// Returns the kind of a carrier.
     topology::Diagonals diagonals_of(CarrierId carrier) const {
         return diagonals_.empty() ? topology::Diagonals() : diagonals_[carrier.index()];
@@ -150,7 +158,7 @@ class FragmentMesh {
     }
     /// True if a cell belongs to the carrier of the fragment that carries it.
     bool is_at_home(CellId cell) const {
-        return carriers_[fragment_of_cell(cell).index()] == carrier_of_cell(cell);
+        return carrier(fragment_of_cell(cell)) == carrier_of_cell(cell);
     }
     /// True if a fragment of its own carrier carries the cell as one of a light part: by way of
     /// other carriers, around a cut. Such a part gives the fragment no connections at nodes.
@@ -168,7 +176,7 @@ class FragmentMesh {
     std::array<double, topology::max_corners> weights_in_carrier(CarrierId carrier,
                                                                  const Vec3& x) const;
     /// Returns the origins of the corners of a carrier, in their order; see origin().
-    std::span<const NodeId> origins_of(CarrierId carrier) const;
+    CornerNodes origins_of(CarrierId carrier) const;
 
     bool operator==(const FragmentMesh&) const = default;
 
@@ -195,6 +203,12 @@ class FragmentMesh {
     void truncate(std::size_t num_nodes, std::size_t num_elements, std::size_t num_cells);
     /// Moves a cell from the list of one fragment to that of another; either may be invalid.
     void move_cell(CellId cell, ElementId from, ElementId to);
+    void set_share(ElementId e, double share) {
+        if (share == 1.0)
+            shares_.erase(e);
+        else
+            shares_[e] = share;
+    }
     void set_carried_around(CellId cell, bool is_around) {
         if (is_around)
             carried_around_.insert(cell);
@@ -240,6 +254,8 @@ class FragmentMesh {
         return ids_of(cells_of_carrier_, carrier, with_number_of<CellId>(carrier));
     }
     int region_of_carrier(CarrierId carrier) const { return regions_[carrier.index()]; }
+    /// Returns the volume of a carrier at rest, m3.
+    double volume_of(CarrierId carrier) const { return volumes_[carrier.index()]; }
     std::span<const CarrierId> carriers_at(NodeId origin) const;
 
     double light_share_;
@@ -252,18 +268,17 @@ class FragmentMesh {
     std::vector<topology::Diagonals> diagonals_;  // empty if there are none
     std::vector<int> regions_;
     std::vector<double> volumes_;  // at rest, m3
-    std::vector<std::size_t> origin_begin_{0};
-    std::vector<NodeId> origins_of_carrier_;  // of its corners before any cut
     // By node before any cut: the carriers at it, in ascending order.
-    std::vector<std::size_t> carrier_begin_;
+    std::vector<std::uint32_t> carrier_begin_;
     std::vector<CarrierId> carriers_at_;
 
-    // By fragment.
-    std::vector<CarrierId> carriers_;
+    // By fragment. The first ones are those of the carriers with their numbers, and keep their
+    // corners, or copies of them: the origins of these are those of the carrier.
+    std::vector<CarrierId> carriers_of_added_;  // of the later ones
     std::vector<std::uint8_t> is_alive_;
-    std::vector<double> shares_;
+    std::unordered_map<ElementId, double> shares_;                    // those that are not 1
     std::unordered_map<ElementId, std::vector<double>> part_shares_;  // see part_shares()
-    std::vector<std::size_t> corner_begin_{0};
+    std::vector<std::uint32_t> corner_begin_{0};
     std::vector<NodeId> corners_;
     // By node.
     // The node before any cut that it is, or is a copy of. Of several nodes with the same rest
@@ -276,8 +291,12 @@ class FragmentMesh {
     std::vector<ElementId> fragment_of_cell_;
     std::unordered_set<CellId> carried_around_;
     std::vector<std::uint8_t> is_constrained_;  // by node of the material, also if it is dead
-    // Scratch of FragmentParts, -1 between edits: by cell its part, by carrier its first part.
-    std::vector<std::int32_t> part_of_cell_, first_part_;
+    /// Scratch of FragmentParts from the first edit on, -1 between edits.
+    struct Scratch {
+        std::vector<std::int32_t> part_of_cell, first_part;  // by cell; by carrier
+        bool operator==(const Scratch&) const { return true; }
+    };
+    Scratch scratch_;
 
     // Exceptions: a carrier that is not listed has one cell and one fragment, of its own number.
     Lists<CarrierId, CellId> cells_of_carrier_;

@@ -11,14 +11,21 @@ namespace incise::fragments {
 
 using topology::rest_volume;
 
+FragmentParts::FragmentParts(FragmentMesh& fragments, const topology::Mesh& material)
+    : fragments_(fragments), material_(material) {
+    fragments_.scratch_.first_part.resize(fragments_.kinds_.size(), -1);
+    fragments_.scratch_.part_of_cell.resize(fragments_.carrier_of_cell_.size(), -1);
+}
+
 FragmentParts::~FragmentParts() {
-    for (const CarrierId carrier : carriers_found_) fragments_.first_part_[carrier.index()] = -1;
+    for (const CarrierId carrier : carriers_found_)
+        fragments_.scratch_.first_part[carrier.index()] = -1;
     for (const CarrierPart* part : parts_)
-        for (const CellId cell : part->cells) fragments_.part_of_cell_[cell.index()] = -1;
+        for (const CellId cell : part->cells) fragments_.scratch_.part_of_cell[cell.index()] = -1;
 }
 
 FragmentParts::Range FragmentParts::of(CarrierId carrier) {
-    std::int32_t& first = fragments_.first_part_[carrier.index()];
+    std::int32_t& first = fragments_.scratch_.first_part[carrier.index()];
     if (first < 0) {
         first = static_cast<std::int32_t>(parts_.size());
         carriers_found_.push_back(carrier);
@@ -31,14 +38,14 @@ FragmentParts::Range FragmentParts::of(CarrierId carrier) {
 }
 
 std::size_t FragmentParts::of_cell(CellId cell) {
-    std::int32_t& part = fragments_.part_of_cell_[cell.index()];
+    std::int32_t& part = fragments_.scratch_.part_of_cell[cell.index()];
     if (part < 0) of(fragments_.carrier_of_cell(cell));
     return static_cast<std::size_t>(part);
 }
 
 double FragmentParts::share_of(std::size_t part) {
     const CarrierId carrier = parts_[part]->carrier;
-    const double whole = fragments_.volumes_[carrier.index()];
+    const double whole = fragments_.volume_of(carrier);
     double all = 0.0;
     std::size_t count = 0;
     for (auto [i, end] = of(carrier); i < end; ++i, ++count) all += parts_[i]->volume;
@@ -59,16 +66,17 @@ bool FragmentParts::is_constrained(std::span<const CellId> cells) const {
 void FragmentParts::add(CarrierId carrier, std::span<const CellId> cells, double volume) {
     const std::size_t index = parts_.size();
     for (const CellId cell : cells)
-        fragments_.part_of_cell_[cell.index()] = static_cast<std::int32_t>(index);
+        fragments_.scratch_.part_of_cell[cell.index()] = static_cast<std::int32_t>(index);
     // Nothing frees a part: its lists are in the same memory.
     CarrierPart& part =
         *new (memory_.allocate(sizeof(CarrierPart), alignof(CarrierPart))) CarrierPart(memory_);
     part.carrier = carrier;
     // A cut can leave flat cells whose volume is negative to rounding.
     constexpr double least_share = 1e-12;
-    part.volume = volume > 0.0 ? volume : least_share * fragments_.volumes_[carrier.index()];
+    const double whole = fragments_.volume_of(carrier);
+    part.volume = volume > 0.0 ? volume : least_share * whole;
     part.master = index;
-    part.is_light = volume < fragments_.light_share_ * fragments_.volumes_[carrier.index()];
+    part.is_light = volume < fragments_.light_share_ * whole;
     part.is_constrained = part.is_light && is_constrained(cells);
     // A part that no edit has touched is carried as before.
     part.fragment = fragments_.fragment_of_cell(cells.front());

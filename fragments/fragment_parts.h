@@ -51,8 +51,7 @@ class FragmentParts {
     };
 
     /// @pre  the fragment mesh has the lists of cells after the edit
-    FragmentParts(FragmentMesh& fragments, const topology::Mesh& material)
-        : fragments_(fragments), material_(material) {}
+    FragmentParts(FragmentMesh& fragments, const topology::Mesh& material);
     ~FragmentParts();
     FragmentParts(const FragmentParts&) = delete;
     FragmentParts& operator=(const FragmentParts&) = delete;
@@ -74,7 +73,7 @@ class FragmentParts {
     template <class Visit>
     void for_each_known_neighbor(std::size_t index, Visit visit) {
         for (const CellId cell : cells_beyond(*parts_[index]))
-            if (const std::int32_t part = fragments_.part_of_cell_[cell.index()]; part >= 0)
+            if (const std::int32_t part = fragments_.scratch_.part_of_cell[cell.index()]; part >= 0)
                 visit(static_cast<std::size_t>(part));
     }
 

@@ -68,7 +68,7 @@ void FragmentUpdate::follow_cells() {
     const std::size_t capacity = std::max(carrier_of.size(), changes_.element_capacity_after);
     carrier_of.resize(capacity);
     fragment_of.resize(capacity);
-    fragments_.part_of_cell_.resize(capacity, -1);
+    fragments_.scratch_.part_of_cell.resize(capacity, -1);
     const auto list_of = [&](CarrierId carrier) -> std::vector<CellId>& {
         return fragments_.entry_of(fragments_.cells_of_carrier_, carrier);
     };
@@ -110,12 +110,12 @@ void FragmentUpdate::follow_cells() {
 ElementId FragmentUpdate::add_fragment(CellId cell) {
     const CarrierId carrier = fragments_.carrier_of_cell(cell);
     const ElementId e(fragments_.element_capacity());
-    fragments_.carriers_.push_back(carrier);
+    fragments_.carriers_of_added_.push_back(carrier);
     fragments_.is_alive_.push_back(1);
-    fragments_.shares_.push_back(0.0);
+    fragments_.set_share(e, 0.0);  // until update_shares()
     const auto origins = fragments_.origins_of(carrier);
     fragments_.corners_.insert(fragments_.corners_.end(), origins.size(), NodeId());
-    fragments_.corner_begin_.push_back(fragments_.corners_.size());
+    fragments_.corner_begin_.push_back(static_cast<std::uint32_t>(fragments_.corners_.size()));
     fragments_.cells_of_fragment_[e] = {};
     ++fragments_.num_elements_;
     parents_.push_back(fragments_.fragment_of_cell(cell));
@@ -204,7 +204,7 @@ void FragmentUpdate::update_shares() {
     std::vector<CarrierId> carriers;
     for (const auto& [e, before] : shares_before_) {
         if (!fragments_.is_alive(e)) continue;
-        fragments_.shares_[e.index()] = share_of(e);
+        fragments_.set_share(e, share_of(e));
         fragments_.drop_if_trivial(fragments_.cells_of_fragment_, e);
         carriers.push_back(fragments_.carrier(e));
     }
@@ -231,9 +231,9 @@ double FragmentUpdate::share_of(ElementId fragment) {
         if (std::ranges::find(parts, part) != parts.end()) continue;
         parts.push_back(part);
         (parts_[part].carrier == carrier ? own : others) +=
-            parts_.share_of(part) * fragments_.volumes_[parts_[part].carrier.index()];
+            parts_.share_of(part) * fragments_.volume_of(parts_[part].carrier);
     }
-    const double whole = fragments_.volumes_[carrier.index()];
+    const double whole = fragments_.volume_of(carrier);
     return own == whole ? 1.0 + others / whole : (own + others) / whole;
 }
 

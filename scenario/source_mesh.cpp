@@ -38,7 +38,7 @@ void require_memory_for(const BoxMeshSpec& box, const std::vector<MaterialSpec>&
     const bool are_springs = std::ranges::all_of(
         materials, [](const MaterialSpec& material) { return material.method == Method::hybmss; });
     // Arrays of the mesh, elements, contact.
-    const double bytes_per_element = is_tetrahedra ? 900.0 : are_springs ? 1500.0 : 4700.0;
+    const double bytes_per_element = is_tetrahedra ? 600.0 : are_springs ? 1500.0 : 4700.0;
     const double elements = (is_tetrahedra ? 6.0 : 1.0) * box.cells[0] *
                             static_cast<double>(box.cells[1]) * box.cells[2];
     if (const auto lack = io::lack_of_memory(bytes_per_element * elements))

@@ -116,8 +116,22 @@ topology::BoundarySurface& World::Parts::built_surface() {
     return *surface;
 }
 
+cutting::Cutter& World::Parts::built_cutter() {
+    if (!cutter) {
+        cutter.emplace(mesh, model.mesh_positions());
+        if (num_steps > 0) cutter->settle(mesh);  // as it would have in the steps so far
+    }
+    return *cutter;
+}
+
 ToolId World::add_tool(const ToolDef& def) {
-    parts_->tools.push_back(make_actor(def, parts_->tissue()));
+    const bool had_cutter = parts_->cutter.has_value();
+    try {
+        parts_->tools.push_back(make_actor(def, parts_->tissue()));
+    } catch (...) {  // a tool that is refused changes nothing
+        if (!had_cutter) parts_->cutter.reset();
+        throw;
+    }
     return parts_->tool_ids.add();
 }
 
@@ -173,7 +187,7 @@ std::vector<physics::ElementResult> World::cell_results() const {
     return physics::ElementSnapshot(model()).results(elements);
 }
 const physics::Model& World::model() const { return parts_->model; }
-const cutting::Cutter& World::cutter() const { return parts_->cutter; }
+const cutting::Cutter& World::cutter() const { return parts_->built_cutter(); }
 std::optional<std::vector<std::pair<VertexId, Vec3>>> World::contact_forces() const {
     if (!parts_->contact) return std::nullopt;
     return parts_->contact->node_forces();

@@ -33,8 +33,7 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
       contact(former.contact ? make_contact(former.contact->settings(), former.solver) : nullptr),
       integrator(make_integrator(former.solver, contact.get())),
       solver(former.solver),
-      ledger(model),
-      cutter(mesh, model.mesh_positions()) {
+      ledger(model) {
     restore_rest(ar);
     model.set_num_threads(former.model.workers().num_threads());
 }
@@ -42,9 +41,11 @@ World::Parts::Parts(const Parts& former, ArchiveReader& ar)
 void World::Parts::restore_rest(ArchiveReader& ar) {
     integrator->restore(ar, model);
     ledger.restore(ar);
-    ar(cutter, tool_ids, constraints, grasps, loads, num_steps, stable_step, bound_interval,
-       has_moved, has_failed);
-    if (!cutter.is_on(mesh)) throw InputError("what its tools remember is of another body");
+    if (ar.read<bool>()) ar(cutter.emplace(mesh, model.mesh_positions()));
+    ar(tool_ids, constraints, grasps, loads, num_steps, stable_step, bound_interval, has_moved,
+       has_failed);
+    if (cutter && !cutter->is_on(mesh))
+        throw InputError("what its tools remember is of another body");
     constraints.complete(model.boundary().constraints().size());
     loads.complete(model.boundary().loads().all().size());
     if (ar.read<bool>() != (contact != nullptr))
@@ -122,7 +123,7 @@ void World::Parts::go_back(std::span<const physics::BodyEdit* const> edits,
     loads = {"load", number};
     tools.clear();
     grasps.clear();
-    cutter = cutting::Cutter(mesh, model.mesh_positions());
+    cutter.reset();
     if (contact) contact = make_contact(contact->settings(), solver);
     integrator = make_integrator(solver, contact.get());
     loads_have_changed = false;

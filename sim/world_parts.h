@@ -128,7 +128,8 @@ struct World::Parts {
     void follow_with_contact();
     ToolActor& tool_of(ToolId id) const { return *tools[tool_ids.position_of(id)]; }
     physics::MaterialTable materials_with_fibres() const;
-    Tissue tissue() { return {mesh, model, cutter, contact.get()}; }
+    Tissue tissue() { return {mesh, model, built_cutter(), contact.get()}; }
+    cutting::Cutter& built_cutter();
     topology::BoundarySurface& built_surface();
 
     std::uint32_t number;  // see next_number()
@@ -140,7 +141,7 @@ struct World::Parts {
     std::unique_ptr<physics::Integrator> integrator;
     Solver solver;
     Ledger ledger;
-    cutting::Cutter cutter;
+    std::optional<cutting::Cutter> cutter;  // from the first tool on
     HandleTable<ToolId> tool_ids{"tool", number};
     // By index of their ids, too, as none is removed.
     std::vector<std::unique_ptr<ToolActor>> tools;

@@ -66,13 +66,14 @@ World::Parts::Parts(WorldDef def)
       integrator(make_integrator(def.solver, contact.get())),
       solver(def.solver),
       ledger(model),
-      cutter(mesh, model.mesh_positions()),
       constraints("constraint", number, model.boundary().constraints().size()),
       grasps(model.boundary().constraints().size()),
       loads("load", number, model.boundary().loads().all().size()),
       stable_step(model.stable_step()),
       bound_interval{topology::mean_element_length(mesh)} {
     model.set_num_threads(def.num_threads);
+    // An archive does not keep the carriers of the source, from which a cutter starts.
+    if (!mesh.source_carriers().is_empty()) built_cutter();
     if (contact) contact->follow(model, built_surface());
 }
 
@@ -83,7 +84,7 @@ void World::Parts::step_to(double end) {
     report.tools.clear();
     const auto cut = [&] {
         has_moved = true;
-        cutter.follow_motion(mesh, model.mesh_positions());
+        if (cutter) cutter->follow_motion(mesh, model.mesh_positions());
         for (const ToolId id : tool_ids.all()) cut_with(id, end);
     };
 
@@ -123,7 +124,7 @@ void World::Parts::follow_with_contact() {
 void World::Parts::report_tool(ToolId id) {
     ToolActor& tool = *tools[id.index];
     if (!tool.is_present() && !tool.has_just_left()) return;
-    ToolState state{id, tool.pose(), tool.is_in_tissue(cutter)};
+    ToolState state{id, tool.pose(), tool.is_in_tissue(built_cutter())};
     if (contact) {
         auto* touching = tool.contact();
         const auto done = touching ? touching->take_sum() : contact::ToolImpulse();
@@ -244,7 +245,7 @@ void World::Parts::follow(ToolId id, const cutting::Split& done, double end) {
     const double mass_removed = removed_mass(model, changes);
     physics::BodyEdit edit = model.apply(mesh, changes);
     if (is_undo_wanted()) log_end = log_end->append(edit);
-    cutter.apply(mesh, changes);
+    cutter->apply(mesh, changes);
     if (surface) surface->apply(mesh, changes);
     EditRecord record = ledger.record(end, num_steps, tools[id.index]->def().name, done,
                                       edit.physics, before, mass_removed);

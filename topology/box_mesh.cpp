@@ -16,6 +16,12 @@ double coordinate(std::int64_t i, std::int64_t n, double size) {
 MeshData box_mesh(CellKind kind, const Vec3& origin, const Vec3& size, std::array<int, 3> cells) {
     const std::int64_t nx = cells[0], ny = cells[1], nz = cells[2];
     MeshData mesh;
+    const auto num_cells =
+        static_cast<std::size_t>((kind == CellKind::hexahedron ? 1 : 6) * nx * ny * nz);
+    mesh.kinds.reserve(num_cells);
+    mesh.regions.reserve(num_cells);
+    mesh.offsets.reserve(num_cells + 1);
+    mesh.corners.reserve(num_cells * static_cast<std::size_t>(traits(kind).num_corners));
     mesh.points.reserve(static_cast<std::size_t>((nx + 1) * (ny + 1) * (nz + 1)));
     for (std::int64_t k = 0; k <= nz; ++k)
         for (std::int64_t j = 0; j <= ny; ++j)

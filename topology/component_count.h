@@ -16,7 +16,7 @@ namespace incise::topology {
 class ComponentCount {
   public:
     /// Counts the components of `mesh`. Cost: that of components().
-    explicit ComponentCount(const Mesh& mesh) : value_(components(mesh).count), epoch_(mesh) {}
+    explicit ComponentCount(const Mesh& mesh) : value_(num_components(mesh)), epoch_(mesh) {}
 
     int value() const { return value_; }
 

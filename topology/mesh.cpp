@@ -151,9 +151,9 @@ void Mesh::append_element_row(CellKind kind, int region, std::span<const VertexI
     regions_.push_back(region);
     alive_.push_back(1);
     corners_.insert(corners_.end(), corners.begin(), corners.end());
-    corner_begin_.push_back(corners_.size());
+    corner_begin_.push_back(static_cast<std::uint32_t>(corners_.size()));
     neighbors_.resize(neighbors_.size() + static_cast<std::size_t>(traits(kind).num_faces));
-    face_begin_.push_back(neighbors_.size());
+    face_begin_.push_back(static_cast<std::uint32_t>(neighbors_.size()));
     inside_faces_.push_back(0);
     ++num_elements_;
 }
@@ -226,7 +226,10 @@ double rest_volume(const Mesh& mesh, CellId e) {
     return signed_volume(mesh.kind(e), {x.data(), corners.size()});
 }
 
-Components components(const Mesh& mesh) {
+namespace {
+
+/// Returns the sets of elements that are joined through faces.
+DisjointSet joined_elements(const Mesh& mesh) {
     DisjointSet groups(mesh.element_capacity());
     for (const CellId e : mesh.elements()) {
         std::int32_t own = e.value;
@@ -235,6 +238,19 @@ Components components(const Mesh& mesh) {
             if (other.is_valid() && other < e) own = groups.join(own, other.value);
         }
     }
+    return groups;
+}
+
+}  // namespace
+
+int num_components(const Mesh& mesh) {
+    DisjointSet groups = joined_elements(mesh);
+    return static_cast<int>(std::ranges::count_if(
+        mesh.elements(), [&](CellId e) { return groups.find(e.value) == e.value; }));
+}
+
+Components components(const Mesh& mesh) {
+    DisjointSet groups = joined_elements(mesh);
     Components result;
     result.of_element.assign(mesh.element_capacity(), -1);
     for (const CellId e : mesh.elements()) {

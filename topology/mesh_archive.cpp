@@ -58,9 +58,9 @@ class MeshArchive {
             }
             const CellTraits& t = traits(kind);
             mesh_.corner_begin_.push_back(mesh_.corner_begin_.back() +
-                                          static_cast<std::size_t>(t.num_corners));
+                                          static_cast<std::uint32_t>(t.num_corners));
             mesh_.face_begin_.push_back(mesh_.face_begin_.back() +
-                                        static_cast<std::size_t>(t.num_faces));
+                                        static_cast<std::uint32_t>(t.num_faces));
         }
         const std::size_t num_elements = mesh_.kinds_.size();
         require(mesh_.alive_.size() == num_elements && mesh_.regions_.size() == num_elements &&

@@ -366,6 +366,7 @@ MeshCheck check(const MeshData& data, const WeldAdvice& advice) {
     }
 
     std::vector<FaceKey> faces = sorted_faces(data, source_faces, usable);
+    result.shared_faces.reserve(faces.size() / 2);
     std::vector<SourceFace> boundary;
     for_each_equal_faces(data, faces, [&](const EqualFaces& same) {
         if (same.is_lone()) boundary.push_back(same.inner[0].face);

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "incise/base/disjoint_set.h"
 #include "incise/base/error.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/hilbert.h"
@@ -17,28 +18,6 @@
 namespace incise::topology {
 
 namespace {
-
-/// Disjoint sets of corners, which are joined where cells share a face.
-class DisjointSets {
-  public:
-    explicit DisjointSets(std::size_t size) : parent_(size) {
-        std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-    }
-    std::size_t find(std::size_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    /// Joins two sets. The lower root remains the root, so that the root of a set is its lowest
-    /// member.
-    void join(std::size_t i, std::size_t j) {
-        i = find(i);
-        j = find(j);
-        if (i != j) parent_[std::max(i, j)] = std::min(i, j);
-    }
-
-  private:
-    std::vector<std::size_t> parent_;
-};
 
 std::string refusal(const std::vector<std::string>& errors) {
     std::string text = errors.front();
@@ -120,19 +99,25 @@ class MeshImport {
         mesh_.label_nodes_.resize(data_.points.size());
         const auto number = [&](std::size_t point) {
             mesh_.label_nodes_[point] = VertexId(mesh_.node_labels_.size());
-            mesh_.node_labels_.push_back(static_cast<std::int64_t>(point));
+            mesh_.node_labels_.push_back(static_cast<std::int32_t>(point));
             mesh_.rest_positions_.push_back(data_.points[point]);
         };
-        std::vector<std::int64_t> used;
-        for (const std::size_t c : cell_of_element_)
-            used.insert(used.end(), data_.cell(c).begin(), data_.cell(c).end());
-        if (keeps_order_) std::sort(used.begin(), used.end());
-        for (const std::int64_t p : used)
-            if (!mesh_.label_nodes_[static_cast<std::size_t>(p)].is_valid())
-                number(static_cast<std::size_t>(p));
+        const auto number_all = [&](const auto& is_used) {
+            for (std::size_t p = 0; p < data_.points.size(); ++p)
+                if (is_used(p) && !mesh_.label_nodes_[p].is_valid()) number(p);
+        };
+        if (keeps_order_) {
+            std::vector<bool> used(data_.points.size(), false);
+            for (const std::int64_t p : data_.corners) used[static_cast<std::size_t>(p)] = true;
+            number_all([&](std::size_t p) { return used[p]; });
+        } else {
+            for (const std::size_t c : cell_of_element_)
+                for (const std::int64_t p : data_.cell(c))
+                    if (!mesh_.label_nodes_[static_cast<std::size_t>(p)].is_valid())
+                        number(static_cast<std::size_t>(p));
+        }
         mesh_.num_nodes_ = mesh_.node_labels_.size();
-        for (std::size_t p = 0; p < data_.points.size(); ++p)
-            if (!mesh_.label_nodes_[p].is_valid()) number(p);
+        number_all([](std::size_t) { return true; });
         for (std::size_t p = 0; p < data_.welded_to.size(); ++p)
             mesh_.label_nodes_[p] =
                 mesh_.label_nodes_[static_cast<std::size_t>(data_.welded_to[p])];
@@ -140,6 +125,8 @@ class MeshImport {
 
     /// Lists the nodes of all corners: a slot for each corner of each element.
     void list_slots() {
+        slots_.reserve(data_.corners.size());
+        slot_begin_.reserve(cell_of_element_.size() + 1);
         slot_begin_.push_back(0);
         for (const std::size_t c : cell_of_element_) {
             for (const std::int64_t p : data_.cell(c))
@@ -159,13 +146,17 @@ class MeshImport {
     }
 
     void divide_pinched_nodes() {
-        DisjointSets sets(slots_.size());
+        // Those of corners, which are joined where cells share a face.
+        DisjointSet sets(slots_.size());
+        const auto join = [&](std::size_t i, std::size_t j) {
+            sets.join(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+        };
         for (const SharedFace& shared : check_.shared_faces)
             for (int p = 0; p < faces_.size(shared.a); ++p)
-                sets.join(corner_slot(shared.a, p), corner_slot(shared.b, shared.shift - p));
+                join(corner_slot(shared.a, p), corner_slot(shared.b, shared.shift - p));
         for (const auto& [quad, triangle] : joined_triangles_)
             for (int p = 0; p < 3; ++p)
-                sets.join(corner_slot(triangle, p), slot_of(quad.cell, faces_.point(triangle, p)));
+                join(corner_slot(triangle, p), slot_of(quad.cell, faces_.point(triangle, p)));
         // Slots are in ascending order of elements. The set of the first slot of a node keeps the
         // node.
         std::vector<std::size_t> first_set(mesh_.rest_positions_.size(), slots_.size());
@@ -174,7 +165,7 @@ class MeshImport {
         std::size_t num_pinched = 0;
         for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
             const VertexId n = slots_[slot];
-            const std::size_t set = sets.find(slot);
+            const auto set = static_cast<std::size_t>(sets.find(static_cast<std::int32_t>(slot)));
             if (!node_of_set[set].is_valid()) {
                 if (first_set[n.index()] == slots_.size()) {
                     first_set[n.index()] = set;
@@ -213,6 +204,14 @@ class MeshImport {
     }
 
     void add_cells() {
+        std::size_t num_faces = 0;
+        for (const CellKind kind : data_.kinds)
+            if (kind != CellKind::polyhedron)
+                num_faces += static_cast<std::size_t>(traits(kind).num_faces);
+        reserve_with_room(data_.num_cells(), mesh_.kinds_, mesh_.alive_, mesh_.regions_,
+                          mesh_.corner_begin_, mesh_.face_begin_, mesh_.inside_faces_);
+        reserve_with_room(slots_.size(), mesh_.corners_);
+        reserve_with_room(num_faces, mesh_.neighbors_);
         for (std::size_t i = 0; i < cell_of_element_.size(); ++i) {
             const std::size_t c = cell_of_element_[i];
             const bool is_polyhedron = data_.kinds[c] == CellKind::polyhedron;

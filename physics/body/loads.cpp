@@ -121,7 +121,7 @@ struct ShareFinder {
             const bool is_whole = part.num_cells == body.fragments.cells_of(e).size();
             const double volume =
                 is_whole ? body.elements.block_of(body.fragments, e).rest_volume(e) : part.volume;
-            const auto& masses = body.elements.block_of(body.fragments, e).contributions(e).mass;
+            const auto masses = body.elements.block_of(body.fragments, e).contributions(e).mass;
             const double sum = std::accumulate(masses.begin(), masses.end(), 0.0);
             for (std::size_t k = 0; k < corners.size(); ++k)
                 shares.add(corners[k], volume * masses[k] / sum);

@@ -84,7 +84,7 @@ std::vector<Vec3> Model::mesh_elastic_forces() const {
     const std::vector<double> mesh_masses = structure_.mesh_masses();
     std::vector<Vec3> forces(mesh_masses.size(), Vec3::Zero());
     for (const VertexId n : mesh().nodes()) {
-        structure_.embedding()[n].for_each([&](NodeId node, double weight) {
+        structure_.embedding().for_each(n, [&](NodeId node, double weight) {
             forces[n.index()] += mesh_masses[n.index()] * weight / masses()[node.index()] *
                                  elastic_forces_[node.index()];
         });

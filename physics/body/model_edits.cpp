@@ -164,7 +164,7 @@ Momenta Model::momenta_of_removed(const ChangeSet& changes) const {
         const ElementId e = fragments().fragment_of_cell(cell);
         const auto corners = fragments().corners(e);
         const double mass = structure_.density(fragments().region(e)) * volume;
-        const auto& masses = structure_.elements().block_of(fragments(), e).contributions(e).mass;
+        const auto masses = structure_.elements().block_of(fragments(), e).contributions(e).mass;
         const double all = std::accumulate(masses.begin(), masses.end(), 0.0);
         const bool is_tetrahedron = corners.size() == 4;  // its corners have equal masses
         for (std::size_t k = 0; k < corners.size(); ++k)

@@ -40,7 +40,7 @@ void Structure::gather(NodeId n, double outer_stiffness) {
     double mass = 0.0, stiffness = 0.0;
     fragments_.star(n, star_);
     for (const ElementId e : star_) {
-        const NodalContributions& of_element = elements_.block_of(fragments_, e).contributions(e);
+        const NodalContributions of_element = elements_.block_of(fragments_, e).contributions(e);
         const auto corner = static_cast<std::size_t>(fragments_.corner_of(e, n));
         mass += of_element.mass[corner];
         stiffness += of_element.stiffness[corner];
@@ -64,7 +64,7 @@ void Structure::follow(const fragments::FragmentChanges& changes) {
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     for (const ElementId e : changed) elements_.replace(fragments_, e);
     resize(changes.mesh.node_capacity_after);
-    elements_.number_nodes(masses_.size());
+    elements_.number_nodes(fragments_.rest_positions());
 }
 
 std::vector<double> Structure::mesh_masses() const {
@@ -123,7 +123,7 @@ double Structure::stable_step(const State& state, std::span<const NodeId> nodes)
 }
 
 double Structure::element_stable_step(ElementId e) const {
-    const NodalContributions& of_element = elements_.block_of(fragments_, e).contributions(e);
+    const NodalContributions of_element = elements_.block_of(fragments_, e).contributions(e);
     double highest = 0.0;
     for (std::size_t k = 0; k < fragments_.corners(e).size(); ++k)
         highest = std::max(highest, of_element.stiffness[k] / of_element.mass[k]);

@@ -86,9 +86,10 @@ class ElementBlock {
 
     /// Updates nodes(), and everything that depends on local numbers, after insert(), replace() and
     /// erase(). Without it, forces, energies and volumes must not be read, and the history must not
-    /// be advanced. `local_numbers` is scratch, by node id; it holds `unnumbered` before and after
-    /// the call.
-    void number_nodes(std::span<std::uint16_t> local_numbers);
+    /// be advanced.
+    /// @param local_numbers   scratch, by node id; it holds `unnumbered` before and after the call
+    /// @param rest_positions  m, by node id
+    void number_nodes(std::span<std::uint16_t> local_numbers, std::span<const Vec3> rest_positions);
 
     /// Returns the positions of the nodes of the block, m, by local number, and one spare entry.
     /// @param positions  by node id, m
@@ -154,7 +155,7 @@ class ElementBlock {
     /// within rounding.
     virtual void results(std::span<const Vec3> positions, const ViscousHistory& history,
                          std::span<ElementResult> results) const = 0;
-    virtual const NodalContributions& contributions(ElementId e) const = 0;
+    virtual NodalContributions contributions(ElementId e) const = 0;
     /// Returns the rest volume of one element, m3: its share of the volume between its corners.
     virtual double rest_volume(ElementId e) const = 0;
 
@@ -167,12 +168,12 @@ class ElementBlock {
   protected:
     explicit ElementBlock(std::size_t num_corners) : num_corners_(num_corners) {}
 
-    /// Returns the node ids of the element in slot s.
-    virtual std::span<const std::uint32_t> corners_of(std::size_t s) const = 0;
     /// Updates everything in the derived class that depends on the elements and their local
     /// numbers. `changed` has the slots whose elements have changed since the last call. If
     /// have_moved_ is true, other elements may also be in other slots than before.
-    virtual void use_numbers(std::span<const std::size_t> changed) = 0;
+    /// @param rest_positions  m, by node id
+    virtual void use_numbers(std::span<const std::size_t> changed,
+                             std::span<const Vec3> rest_positions) = 0;
 
     /// Returns the local numbers of the nodes of the element in slot s.
     std::span<std::uint16_t> local_corners(std::size_t s) {
@@ -183,8 +184,9 @@ class ElementBlock {
     }
 
     /// Adds a slot for a new element and returns its index.
-    std::size_t add_slot(ElementId e);
-    void change_slot(std::size_t s);
+    std::size_t add_slot(ElementId e, std::span<const NodeId> corners);
+    /// Gives an element other corners, or the same ones anew.
+    void change_slot(std::size_t s, std::span<const NodeId> corners);
     void remove_slot(std::size_t s);
     std::size_t slot_of(ElementId e) const {
         // Ids ascend and have few gaps. The slot is therefore at most, and mostly exactly, the
@@ -203,6 +205,20 @@ class ElementBlock {
     // By slot, local numbers of the nodes; `unnumbered` for an element that has changed.
     std::vector<std::uint16_t> local_corners_;
     bool is_numbered_ = true, have_moved_ = false;
+
+  private:
+    /// The node ids of an element that has changed since the nodes were numbered.
+    struct Changed {
+        ElementId element;
+        std::array<std::uint32_t, topology::max_corners> nodes;
+    };
+    bool is_changed(std::size_t s) const { return local_corners(s).front() == unnumbered; }
+    void forget_change(ElementId e) {
+        std::erase_if(changed_, [&](const Changed& changed) { return changed.element == e; });
+    }
+    void note_change(ElementId e, std::span<const NodeId> corners);
+
+    std::vector<Changed> changed_;
 };
 
 }  // namespace incise::physics

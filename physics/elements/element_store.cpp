@@ -121,11 +121,16 @@ ElementStore::ElementStore(const FragmentMesh& fragments, const topology::Mesh& 
     }
     for (std::size_t e = 0; e < fragments.element_capacity(); ++e)  // also if an edit removed it
         has_kind_[static_cast<std::size_t>(fragments.kind(ElementId(e)))] = true;
+    // Blocks are completed one after the other, so that few have lists of changes at a time.
+    std::size_t range = 0;
     for (const ElementId e : fragments.elements()) {
+        if (e.index() / ElementBlock::max_elements != range)
+            number_nodes(fragments.rest_positions());
+        range = e.index() / ElementBlock::max_elements;
         require_law(fragments, mesh, e);
         insert(fragments, e);
     }
-    number_nodes(fragments.node_capacity());
+    number_nodes(fragments.rest_positions());
 }
 
 void ElementStore::require_law(const FragmentMesh& fragments, const topology::Mesh& mesh,
@@ -244,7 +249,8 @@ void ElementStore::note_change(std::size_t block) {
         changed_blocks_.push_back(block);
 }
 
-void ElementStore::number_nodes(std::size_t num_nodes) {
+void ElementStore::number_nodes(std::span<const Vec3> rest_positions) {
+    const std::size_t num_nodes = rest_positions.size();
     std::sort(changed_blocks_.begin(), changed_blocks_.end());
     const auto last = std::unique(changed_blocks_.begin(), changed_blocks_.end());
     changed_blocks_.erase(last, changed_blocks_.end());
@@ -261,7 +267,7 @@ void ElementStore::number_nodes(std::size_t num_nodes) {
         for_each_range(block.nodes(), [&](std::size_t r, std::size_t, std::size_t) {
             ranges_[r].erase(offset_of(ranges_[r], b));
         });
-        block.number_nodes(local_numbers_);
+        block.number_nodes(local_numbers_, rest_positions);
         for_each_range(block.nodes(), [&](std::size_t r, std::size_t begin, std::size_t end) {
             ranges_[r].insert(offset_of(ranges_[r], b), {b, begin, end});
         });

@@ -94,9 +94,9 @@ class ElementStore {
     void erase(ElementId e, int region, topology::CellKind kind);
 
     /// Numbers the nodes of the changed blocks, at the end of an edit. Before this call, only
-    /// contributions and rest volumes of elements may be read. `num_nodes` is the node capacity of
-    /// the fragments.
-    void number_nodes(std::size_t num_nodes);
+    /// contributions and rest volumes of elements may be read.
+    /// @param rest_positions  of the nodes of the fragments, m, by id
+    void number_nodes(std::span<const Vec3> rest_positions);
 
     /// Returns the block of an element.
     const ElementBlock& block_of(const fragments::FragmentMesh& fragments, ElementId e) const {

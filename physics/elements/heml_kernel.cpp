@@ -8,25 +8,13 @@
 
 namespace incise::physics {
 
-Vec6 squared_links(const std::array<Vec3, 4>& x) {
-    Vec6 l;
-    l << (x[1] - x[0]).squaredNorm(), (x[2] - x[0]).squaredNorm(), (x[3] - x[0]).squaredNorm(),
-        (x[2] - x[1]).squaredNorm(), (x[3] - x[2]).squaredNorm(), (x[1] - x[3]).squaredNorm();
-    return l;
-}
-
-Mat3 edge_matrix(const std::array<Vec3, 4>& x) {
-    Mat3 v;
-    v << x[1] - x[0], x[2] - x[0], x[3] - x[0];
-    return v;
-}
-
 // Needles have edges that are nearly parallel, so that V is inverted with full pivoting. An inverse
 // by cofactors would have the square of this loss of accuracy.
 LinkElement link_element(const std::array<Vec3, 4>& X, const Vec3& fibre) {
     const Mat3 V = edge_matrix(X);
-    return {topology::tetrahedron_volume(X[0], X[1], X[2], X[3]), squared_links(X), V,
-            V.fullPivLu().inverse(), fibre};
+    return {{topology::tetrahedron_volume(X[0], X[1], X[2], X[3]), squared_links(X),
+             V.fullPivLu().inverse(), fibre},
+            V};
 }
 
 Mat3 displacement_gradient(const LinkElement& e, const std::array<Vec3, 4>& x) {

@@ -19,19 +19,31 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat3 = Eigen::Matrix3d;
 
 /// Returns the squared edge lengths, m2, in the order of the paper: 01, 02, 03, 12, 23, 31.
-Vec6 squared_links(const std::array<Vec3, 4>& x);
+inline Vec6 squared_links(const std::array<Vec3, 4>& x) {
+    Vec6 l;
+    l << (x[1] - x[0]).squaredNorm(), (x[2] - x[0]).squaredNorm(), (x[3] - x[0]).squaredNorm(),
+        (x[2] - x[1]).squaredNorm(), (x[3] - x[2]).squaredNorm(), (x[1] - x[3]).squaredNorm();
+    return l;
+}
 
 /// Returns the matrix with the edges 01, 02 and 03 as columns, m.
-Mat3 edge_matrix(const std::array<Vec3, 4>& x);
+inline Mat3 edge_matrix(const std::array<Vec3, 4>& x) {
+    Mat3 v;
+    v << x[1] - x[0], x[2] - x[0], x[3] - x[0];
+    return v;
+}
 
-/// Precomputed values of a tetrahedron at rest.
-struct LinkElement {
+/// Precomputed values of a tetrahedron at rest that its SIMD versions need.
+struct LinkMetric {
     double volume;       ///< m3
     Vec6 rest_links;     ///< squared_links() at rest, m2
-    Mat3 edges;          ///< V = edge_matrix() at rest, m
     Mat3 inverse_edges;  ///< V^-1, 1/m; row i is the gradient of the shape function N_(i + 1)
     /// a0, the direction of the fibres at rest, of unit length; zero for a law without fibres.
     Vec3 fibre = Vec3::Zero();
+};
+/// Precomputed values of a tetrahedron at rest.
+struct LinkElement : LinkMetric {
+    Mat3 edges;  ///< V = edge_matrix() at rest, m
 };
 
 /// Returns the values of a tetrahedron with its corners at X, m, at rest. They depend only on the
@@ -68,6 +80,10 @@ struct HemlKernel {
     using Corners = std::array<Vec3, 4>;
     using Element = LinkElement;
     using Lanes = SimdHemlElements;
+    /// What a block stores of an element: only the inverse takes long to compute.
+    struct Stored {
+        Mat3 inverse_edges;
+    };
 
     Law law;
     double inversion_threshold;
@@ -78,6 +94,21 @@ struct HemlKernel {
     /// @param fibre  direction of the fibres at rest, of unit length; ignored by a law without
     ///               fibres
     Element precompute(const Corners& X, const Vec3& fibre = Vec3::Zero()) const;
+
+    Stored stored(const Element& e) const { return {e.inverse_edges}; }
+    /// Returns what the lanes need of the element that precompute() gave.
+    /// @param X       corners at rest, m
+    /// @param volume  of the element, m3
+    /// @param fibre   of the element; zero for a law without fibres
+    LinkMetric for_lanes(const Stored& stored, const Corners& X, double volume,
+                         const Vec3& fibre) const {
+        return {volume, squared_links(X), stored.inverse_edges, fibre};
+    }
+    /// Returns the element that precompute() gave; see for_lanes().
+    Element restored(const Stored& stored, const Corners& X, double volume,
+                     const Vec3& fibre) const {
+        return {for_lanes(stored, X, volume, fibre), edge_matrix(X)};
+    }
 
     /// Returns current over rest volume; negative for an inverted element.
     double volume_ratio(const Element& e, const Corners& x) const;

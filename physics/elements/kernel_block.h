@@ -1,77 +1,17 @@
-// Implementation of a block of elements with one kernel, and the requirements on kernels.
+// Implementation of a block of elements with one kernel.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "incise/base/sum.h"
 #include "incise/physics/elements/element_block.h"
 #include "incise/physics/elements/element_tangent.h"
+#include "incise/physics/elements/kernel_concepts.h"
 
 namespace incise::physics {
-
-/// A kernel whose elements have a viscous history, such as ViscousKernel.
-template <class Kernel>
-concept HasHistory = requires(Kernel& kernel) {
-    kernel.begin_step(0.0);
-};
-
-/// A kernel that needs the direction of fibres.
-template <class Kernel>
-concept TakesFibre = requires(const Kernel& kernel, typename Kernel::Corners X, Vec3 fibre) {
-    kernel.precompute(X, fibre);
-};
-
-/// A kernel whose elements have tetrahedra of which a fragment has shares.
-template <class Kernel>
-concept TakesPartShares = requires(const Kernel& kernel, typename Kernel::Corners X,
-                                   std::span<const double> shares) {
-    kernel.precompute(X, Vec3(), shares);
-};
-
-/// A kernel whose elements do not give the same mass to each corner.
-template <class Kernel>
-concept HasMassFractions = requires(const Kernel& kernel, const typename Kernel::Element& e) {
-    kernel.mass_fractions(e);
-};
-
-/// A kernel whose elements can be inverted in a part alone, such as VirtualCentreKernel.
-template <class Kernel>
-concept HasLeastVolumeRatio = requires(const Kernel& kernel, const typename Kernel::Element& e,
-                                       const typename Kernel::Corners& x) {
-    kernel.least_volume_ratio(e, x);
-};
-
-/// A kernel with a SIMD version `Kernel::Lanes`, such as SimdHemlElements, which computes the
-/// elastic forces of all elements of a block. The viscous forces come from `Kernel::MemoryLanes`
-/// if there are any, else from the kernel.
-template <class Kernel>
-concept HasLanes = requires {
-    typename Kernel::Lanes;
-};
-
-/// A kernel whose SIMD version also computes energies, volumes and stresses, in double precision.
-template <class Kernel>
-concept HasLanesOfResults = HasLanes<Kernel> &&
-    requires(const typename Kernel::Lanes& lanes, const Kernel& kernel, const LocalVector* x) {
-    lanes.state(kernel, x);
-    lanes.set_results(kernel, x, std::span<ElementResult>());
-};
-
-/// A kernel with a SIMD version of its history, `Kernel::MemoryLanes`, such as SimdViscousElements.
-/// It advances the history and computes the viscous forces of all elements of a block.
-template <class Kernel>
-concept HasMemoryLanes = requires {
-    typename Kernel::MemoryLanes;
-};
-
-/// A kernel whose SIMD version also computes the stiffening of all elements.
-template <class Kernel>
-concept HasLanesOfStiffening = HasLanes<Kernel> &&
-    requires(const typename Kernel::Lanes& lanes, const Kernel& kernel, const LocalVector* x) {
-    lanes.set_stiffening(kernel, x, std::span<double>());
-};
 
 /// A block whose elements all use one kernel. A kernel must have the members of MassSpringKernel,
 /// and an overload of element_tangent(). ViscousKernel shows the further members of a kernel with
@@ -107,11 +47,11 @@ class KernelBlock final : public ElementBlock {
                 const Corners x = gather(s, positions);
                 Corners f;
                 if constexpr (HasHistory<Kernel>)
-                    f = kernel_.forces_of_memory(row(s).rest, x, history.of(elements_[s]));
+                    f = kernel_.forces_of_memory(rest(s), x, history.of(elements_[s]));
                 else
-                    f = kernel_.forces(row(s).rest, x);
+                    f = kernel_.forces(rest(s), x);
                 for (std::size_t k = 0; k < num_corners; ++k)
-                    forces[local_corners(s)[k]].vector() += row(s).share * f[k];
+                    forces[local_corners(s)[k]].vector() += share(s) * f[k];
             }
     }
 
@@ -124,22 +64,21 @@ class KernelBlock final : public ElementBlock {
 
     void add_forces(const EndOfStep& end, std::span<Vec3> forces) const override {
         for (std::size_t s = 0; s < elements_.size(); ++s) {
-            const Corners f = at_end_of_step(s, end, [&](const auto&... state) {
-                return kernel_.forces(row(s).rest, state...);
-            });
-            for (std::size_t k = 0; k < num_corners; ++k)
-                forces[row(s).nodes[k]] += row(s).share * f[k];
+            const Corners f = at_end_of_step(
+                s, end, [&](const auto&... state) { return kernel_.forces(rest(s), state...); });
+            const auto nodes = nodes_of(s);
+            for (std::size_t k = 0; k < num_corners; ++k) forces[nodes[k]] += share(s) * f[k];
         }
     }
 
     double potential(const EndOfStep& end) const override {
         Sum sum;
         for (std::size_t s = 0; s < elements_.size(); ++s)
-            sum += row(s).share * at_end_of_step(s, end, [&](const auto&... state) {
+            sum += share(s) * at_end_of_step(s, end, [&](const auto&... state) {
                        if constexpr (HasHistory<Kernel>)
-                           return kernel_.potential(row(s).rest, state...);
+                           return kernel_.potential(rest(s), state...);
                        else
-                           return kernel_.energy(row(s).rest, state...);
+                           return kernel_.energy(rest(s), state...);
                    });
         return sum.value();
     }
@@ -147,11 +86,11 @@ class KernelBlock final : public ElementBlock {
     void visit_tangents(const EndOfStep& end, TangentKind kind, TangentSink& sink) const override {
         for (std::size_t s = 0; s < elements_.size(); ++s) {
             auto K = at_end_of_step(s, end, [&](const auto&... state) {
-                return element_tangent(kernel_, row(s).rest, state...);
+                return element_tangent(kernel_, rest(s), state...);
             });
             if (kind == TangentKind::positive) K = positive_part(K);
-            K *= row(s).share;
-            sink.add(row(s).nodes, {K.data(), static_cast<std::size_t>(K.size())});
+            K *= share(s);
+            sink.add(nodes_of(s), {K.data(), static_cast<std::size_t>(K.size())});
         }
     }
 
@@ -166,9 +105,8 @@ class KernelBlock final : public ElementBlock {
             // begin_step() sets, which only this function uses.
             kernel_.begin_step(dt);
             const auto advance_one = [&](std::size_t s) {
-                return row(s).share * kernel_.advance(row(s).rest, gather(s, before),
-                                                      gather(s, positions),
-                                                      history.of(elements_[s]));
+                return share(s) * kernel_.advance(rest(s), gather(s, before), gather(s, positions),
+                                                  history.of(elements_[s]));
             };
             if constexpr (HasMemoryLanes<Kernel>)
                 energy = memory_lanes_.advance(kernel_, before.data(), positions.data(), history,
@@ -187,7 +125,7 @@ class KernelBlock final : public ElementBlock {
             lanes_.set_stiffening(kernel_, positions.data(), factors);
         else
             for (std::size_t s = 0; s < elements_.size(); ++s)
-                factors[s] = kernel_.stiffening(row(s).rest, gather(s, positions));
+                factors[s] = kernel_.stiffening(rest(s), gather(s, positions));
         // Rounding of the factors at rest, in floats.
         constexpr double rounding = 1e-3;
         if (std::ranges::all_of(factors, [](double f) { return f <= 1.0 + rounding; }))
@@ -196,8 +134,10 @@ class KernelBlock final : public ElementBlock {
         for (std::size_t s = 0; s < elements_.size(); ++s) {
             if (factors[s] <= 1.0 + rounding) continue;
             const auto corners = local_corners(s);
+            // In floats: the last digits of the stable step have always been those.
             for (std::size_t k = 0; k < num_corners; ++k)
-                excess[corners[k]] += (factors[s] - 1.0) * double{rest_stiffness_[s][k]};
+                excess[corners[k]] +=
+                    (factors[s] - 1.0) * double{static_cast<float>(row(s).stiffness[k])};
         }
         return true;
     }
@@ -215,7 +155,7 @@ class KernelBlock final : public ElementBlock {
         BlockState state;
         for (std::size_t s = 0; s < elements_.size(); ++s) {
             const Corners x = gather(s, positions);
-            state.elastic_energy += row(s).share * kernel_.energy(row(s).rest, x);
+            state.elastic_energy += share(s) * kernel_.energy(rest(s), x);
             state.min_volume_ratio = std::min(state.min_volume_ratio, least_volume_ratio(s, x));
         }
         return state;
@@ -229,7 +169,7 @@ class KernelBlock final : public ElementBlock {
     double stiffness_energy() const override {
         double sum = 0.0;
         for (std::size_t s = 0; s < elements_.size(); ++s)
-            sum += row(s).share * kernel_.stiffness_energy(row(s).rest);
+            sum += share(s) * kernel_.stiffness_energy(rest(s));
         return sum;
     }
 
@@ -242,13 +182,12 @@ class KernelBlock final : public ElementBlock {
                  std::span<ElementResult> results) const override {
         assert(results.size() == elements_.size());
         if constexpr (HasLanesOfResults<Kernel> && !HasHistory<Kernel>) {
-            for (std::size_t s = 0; s < elements_.size(); ++s)
-                results[s].volume = row(s).rest.volume;
+            for (std::size_t s = 0; s < elements_.size(); ++s) results[s].volume = volumes_[s];
             const LocalVector* x = local_positions(positions).data();
             lanes_in_doubles([&](const auto& lanes) { lanes.set_results(kernel_, x, results); });
             for (std::size_t s = 0; s < elements_.size(); ++s) {
-                results[s].volume *= row(s).share;
-                results[s].energy *= row(s).share;
+                results[s].volume *= share(s);
+                results[s].energy *= share(s);
             }
             return;
         }
@@ -258,7 +197,7 @@ class KernelBlock final : public ElementBlock {
 
     double stiffening(ElementId e, std::span<const Vec3> positions) const override {
         const std::size_t s = slot_of(e);
-        return std::max(kernel_.stiffening(row(s).rest, gather(s, positions)), 1.0);
+        return std::max(kernel_.stiffening(rest(s), gather(s, positions)), 1.0);
     }
 
     double least_volume_ratio(ElementId e, std::span<const Vec3> positions) const override {
@@ -266,62 +205,89 @@ class KernelBlock final : public ElementBlock {
         return least_volume_ratio(s, gather(s, positions));
     }
 
-    const NodalContributions& contributions(ElementId e) const override {
-        return row(slot_of(e)).contributions;
+    NodalContributions contributions(ElementId e) const override {
+        const std::size_t s = slot_of(e);
+        NodalContributions of_corners;
+        std::ranges::copy(row(s).stiffness, of_corners.stiffness.begin());
+        if constexpr (HasMassFractions<Kernel>)
+            std::ranges::copy(row(s).masses, of_corners.mass.begin());
+        else
+            std::fill_n(of_corners.mass.begin(), num_corners,
+                        share(s) * (density_ * volumes_[s] / static_cast<double>(num_corners)));
+        return of_corners;
     }
     double rest_volume(ElementId e) const override { return volume_of(slot_of(e)); }
 
     void insert(ElementId e, const ElementInput& input) override {
-        const std::size_t s = add_slot(e);
+        const std::size_t s = add_slot(e, input.corners);
         const auto offset = static_cast<std::ptrdiff_t>(s);
-        row_of_.insert(row_of_.begin() + offset, static_cast<std::uint32_t>(rows_.size()));
-        rows_.push_back(make_row(input));
-        rest_volumes_.insert(rest_volumes_.begin() + offset, volume_of(s));
-        rest_stiffness_.insert(rest_stiffness_.begin() + offset, stiffness_of(s));
+        row_of_.insert(row_of_.begin() + offset, static_cast<std::uint16_t>(rows_.size()));
+        rows_.emplace_back();
+        if (stores_fibres()) fibres_.emplace_back();
+        volumes_.insert(volumes_.begin() + offset, 0.0);
+        if (!shares_.empty()) shares_.insert(shares_.begin() + offset, 1.0);
+        set(s, input);
     }
 
     void replace(ElementId e, const ElementInput& input) override {
         const std::size_t s = slot_of(e);
-        rows_[row_of_[s]] = make_row(input);
-        rest_volumes_[s] = volume_of(s);
-        rest_stiffness_[s] = stiffness_of(s);
-        change_slot(s);
+        change_slot(s, input.corners);
+        set(s, input);
     }
 
     void erase(ElementId e) override {
         const std::size_t s = slot_of(e);
         // The last row replaces the erased one.
-        const auto last = static_cast<std::uint32_t>(rows_.size() - 1);
+        const auto last = static_cast<std::uint16_t>(rows_.size() - 1);
         rows_[row_of_[s]] = rows_[last];
-        *std::find(row_of_.begin(), row_of_.end(), last) = row_of_[s];
         rows_.pop_back();
-        row_of_.erase(row_of_.begin() + static_cast<std::ptrdiff_t>(s));
-        rest_volumes_.erase(rest_volumes_.begin() + static_cast<std::ptrdiff_t>(s));
-        rest_stiffness_.erase(rest_stiffness_.begin() + static_cast<std::ptrdiff_t>(s));
+        if (stores_fibres()) {
+            fibres_[row_of_[s]] = fibres_[last];
+            fibres_.pop_back();
+        }
+        *std::find(row_of_.begin(), row_of_.end(), last) = row_of_[s];
+        const auto offset = static_cast<std::ptrdiff_t>(s);
+        row_of_.erase(row_of_.begin() + offset);
+        volumes_.erase(volumes_.begin() + offset);
+        if (!shares_.empty()) shares_.erase(shares_.begin() + offset);
         remove_slot(s);
     }
 
   protected:
-    std::span<const std::uint32_t> corners_of(std::size_t s) const override { return row(s).nodes; }
-
-    void use_numbers(std::span<const std::size_t> changed) override {
+    void use_numbers(std::span<const std::size_t> changed,
+                     std::span<const Vec3> rest_positions) override {
         rest_volume_ = {};
-        for (const double volume : rest_volumes_) rest_volume_ += volume;
+        for (std::size_t s = 0; s < elements_.size(); ++s) rest_volume_ += volume_of(s);
+        if constexpr (IsRestored<Kernel>) {
+            rest_positions_.resize(nodes_.size());
+            for (std::size_t i = 0; i < nodes_.size(); ++i)
+                rest_positions_[i] = rest_positions[nodes_[i]];
+        }
         if constexpr (HasLanes<Kernel>)
-            update(lanes_, changed,
-                   [&](std::size_t s) { lanes_.set(s, row(s).rest, row(s).share); });
+            update(lanes_, changed, [&](std::size_t s) { lanes_.set(s, for_lanes(s), share(s)); });
         if constexpr (HasMemoryLanes<Kernel>)
             update(memory_lanes_, changed, [&](std::size_t s) {
-                memory_lanes_.set(s, elements_[s], row(s).rest, row(s).share);
+                memory_lanes_.set(s, elements_[s], for_lanes(s), share(s));
             });
     }
 
   private:
+    template <class K>
+    struct StoredOf {
+        using Type = typename K::Element;
+    };
+    template <IsRestored K>
+    struct StoredOf<K> {
+        using Type = typename K::Stored;
+    };
+    /// The mass at each corner, kg. Without fractions, each has the same.
+    struct SameMasses {};
+    using Masses =
+        std::conditional_t<HasMassFractions<Kernel>, std::array<double, num_corners>, SameMasses>;
     struct Row {
-        std::array<std::uint32_t, num_corners> nodes;
-        typename Kernel::Element rest;
-        double share;
-        NodalContributions contributions;
+        typename StoredOf<Kernel>::Type rest;
+        std::array<double, num_corners> stiffness;  // see NodalContributions
+        [[no_unique_address]] Masses masses;
     };
 
     struct NoLanes {};
@@ -343,6 +309,30 @@ class KernelBlock final : public ElementBlock {
     };
 
     const Row& row(std::size_t s) const { return rows_[row_of_[s]]; }
+    double share(std::size_t s) const { return shares_.empty() ? 1.0 : shares_[s]; }
+    /// Returns the values of an element at rest, by value if they are restored.
+    decltype(auto) rest(std::size_t s) const {
+        if constexpr (IsRestored<Kernel>)
+            return kernel_.restored(row(s).rest, rest_corners(s), volumes_[s], fibre(s));
+        else
+            return (row(s).rest);
+    }
+    /// Returns what the lanes need of rest().
+    decltype(auto) for_lanes(std::size_t s) const {
+        if constexpr (IsRestored<Kernel>)
+            return kernel_.for_lanes(row(s).rest, rest_corners(s), volumes_[s], fibre(s));
+        else
+            return (row(s).rest);
+    }
+    Vec3 fibre(std::size_t s) const {
+        return fibres_.empty() ? Vec3(Vec3::Zero()) : fibres_[row_of_[s]];
+    }
+    bool stores_fibres() const {
+        if constexpr (IsRestored<Kernel>)
+            return has_fibres(kernel_.law);
+        else
+            return false;
+    }
 
     /// Sets all elements by calls of set(s), which sets the element in slot s.
     template <class Lanes, class Set>
@@ -367,61 +357,60 @@ class KernelBlock final : public ElementBlock {
         Kernel in_doubles = kernel_;
         in_doubles.precision = Precision::double_precision;
         typename LanesOf<Kernel>::Type lanes;
-        fill(lanes, in_doubles, [&](std::size_t s) { lanes.set(s, row(s).rest, row(s).share); });
+        fill(lanes, in_doubles, [&](std::size_t s) { lanes.set(s, for_lanes(s), share(s)); });
         return use(lanes);
     }
 
     double least_volume_ratio(std::size_t s, const Corners& x) const {
         if constexpr (HasLeastVolumeRatio<Kernel>)
-            return kernel_.least_volume_ratio(row(s).rest, x);
+            return kernel_.least_volume_ratio(rest(s), x);
         else
-            return kernel_.volume_ratio(row(s).rest, x);
+            return kernel_.volume_ratio(rest(s), x);
     }
 
-    std::array<float, num_corners> stiffness_of(std::size_t s) const {
-        std::array<float, num_corners> of_corners;
-        for (std::size_t k = 0; k < num_corners; ++k)
-            of_corners[k] = static_cast<float>(row(s).contributions.stiffness[k]);
-        return of_corners;
-    }
-    double volume_of(std::size_t s) const { return row(s).share * row(s).rest.volume; }
+    double volume_of(std::size_t s) const { return share(s) * volumes_[s]; }
 
-    Row make_row(const ElementInput& input) const {
-        assert(input.corners.size() == num_corners);
-        Row row;
-        row.share = input.share;
-        Corners X;
-        for (std::size_t k = 0; k < num_corners; ++k) {
-            row.nodes[k] = static_cast<std::uint32_t>(input.corners[k].index());
-            X[k] = input.rest_positions[input.corners[k].index()];
-        }
+    typename Kernel::Element precompute(const ElementInput& input, const Corners& X) const {
         if constexpr (TakesPartShares<Kernel>) {
             // The shares of the tetrahedra over that of the whole, which the block applies.
             std::array<double, Kernel::num_parts> relative;
             assert(input.part_shares.empty() || input.part_shares.size() == relative.size());
             for (std::size_t t = 0; t < input.part_shares.size(); ++t)
                 relative[t] = input.part_shares[t] / input.share;
-            row.rest = kernel_.precompute(X, input.fibre,
-                                          std::span(relative).first(input.part_shares.size()),
-                                          input.diagonals);
+            return kernel_.precompute(X, input.fibre,
+                                      std::span(relative).first(input.part_shares.size()),
+                                      input.diagonals);
         } else if constexpr (TakesFibre<Kernel>) {
-            row.rest = kernel_.precompute(X, input.fibre);
+            return kernel_.precompute(X, input.fibre);
         } else {
-            row.rest = kernel_.precompute(X);
+            return kernel_.precompute(X);
         }
-        if constexpr (HasMassFractions<Kernel>) {
-            const auto fractions = kernel_.mass_fractions(row.rest);
-            for (std::size_t k = 0; k < num_corners; ++k)
-                row.contributions.mass[k] = row.share * density_ * row.rest.volume * fractions[k];
-        } else {
-            std::fill_n(
-                row.contributions.mass.begin(), num_corners,
-                row.share * (density_ * row.rest.volume / static_cast<double>(num_corners)));
-        }
-        const auto stiffness = kernel_.stiffness_bounds(row.rest, X);
+    }
+
+    /// Precomputes the element in slot s.
+    void set(std::size_t s, const ElementInput& input) {
+        assert(input.corners.size() == num_corners);
+        Corners X;
         for (std::size_t k = 0; k < num_corners; ++k)
-            row.contributions.stiffness[k] = row.share * stiffness[k];
-        return row;
+            X[k] = input.rest_positions[input.corners[k].index()];
+        const typename Kernel::Element element = precompute(input, X);
+        Row& row = rows_[row_of_[s]];
+        volumes_[s] = element.volume;
+        if (shares_.empty() && input.share != 1.0) shares_.assign(elements_.size(), 1.0);
+        if (!shares_.empty()) shares_[s] = input.share;
+        if constexpr (HasMassFractions<Kernel>) {
+            const auto fractions = kernel_.mass_fractions(element);
+            for (std::size_t k = 0; k < num_corners; ++k)
+                row.masses[k] = input.share * density_ * element.volume * fractions[k];
+        }
+        const auto stiffness = kernel_.stiffness_bounds(element, X);
+        for (std::size_t k = 0; k < num_corners; ++k) row.stiffness[k] = input.share * stiffness[k];
+        if constexpr (IsRestored<Kernel>) {
+            row.rest = kernel_.stored(element);
+            if (stores_fibres()) fibres_[row_of_[s]] = element.fibre;
+        } else {
+            row.rest = element;
+        }
     }
 
     /// Returns evaluate(corners). For a kernel with history it returns evaluate(corners, end), with
@@ -439,30 +428,44 @@ class KernelBlock final : public ElementBlock {
                             const ViscousHistory& history) const {
         const Corners x = gather(s, positions);
         ElementResult result;
-        result.volume = row(s).rest.volume;
-        result.volume_ratio = kernel_.volume_ratio(row(s).rest, x);
-        result.energy = kernel_.energy(row(s).rest, x);
+        result.volume = volumes_[s];
+        result.volume_ratio = kernel_.volume_ratio(rest(s), x);
+        result.energy = kernel_.energy(rest(s), x);
         const Corners f = forces_of(s, x, history);
         Eigen::Matrix3d virial = Eigen::Matrix3d::Zero();
         for (std::size_t k = 1; k < num_corners; ++k) virial += f[k] * (x[k] - x[0]).transpose();
         result.set_stress(virial);
-        result.volume *= row(s).share;
-        result.energy *= row(s).share;
+        result.volume *= share(s);
+        result.energy *= share(s);
         return result;
     }
 
     Corners forces_of(std::size_t s, const Corners& x,
                       [[maybe_unused]] const ViscousHistory& history) const {
         if constexpr (HasHistory<Kernel>)
-            return kernel_.forces(row(s).rest, x, history.of(elements_[s]));
+            return kernel_.forces(rest(s), x, history.of(elements_[s]));
         else
-            return kernel_.forces(row(s).rest, x);
+            return kernel_.forces(rest(s), x);
     }
 
+    /// Returns the ids of the nodes of an element.
+    std::array<std::uint32_t, num_corners> nodes_of(std::size_t s) const {
+        std::array<std::uint32_t, num_corners> nodes;
+        for (std::size_t k = 0; k < num_corners; ++k) nodes[k] = nodes_[local_corners(s)[k]];
+        return nodes;
+    }
+    /// Returns the corners from positions by node id.
     Corners gather(std::size_t s, std::span<const Vec3> positions) const {
+        const auto nodes = nodes_of(s);
         Corners x;
-        for (std::size_t k = 0; k < num_corners; ++k) x[k] = positions[row(s).nodes[k]];
+        for (std::size_t k = 0; k < num_corners; ++k) x[k] = positions[nodes[k]];
         return x;
+    }
+    /// Returns the corners at rest.
+    Corners rest_corners(std::size_t s) const {
+        Corners X;
+        for (std::size_t k = 0; k < num_corners; ++k) X[k] = rest_positions_[local_corners(s)[k]];
+        return X;
     }
     /// Returns the corners from positions by local number.
     Corners gather(std::size_t s, std::span<const LocalVector> positions) const {
@@ -475,10 +478,11 @@ class KernelBlock final : public ElementBlock {
     Kernel kernel_;
     double density_;
     std::vector<Row> rows_;              // in no order
-    std::vector<std::uint32_t> row_of_;  // by slot
-    std::vector<double> rest_volumes_;   // by slot, m3
-    // By slot and corner, N/m: the contributions again, in fewer bytes for the loop over all.
-    std::vector<std::array<float, num_corners>> rest_stiffness_;
+    std::vector<std::uint16_t> row_of_;  // by slot
+    std::vector<double> volumes_;        // by slot, of the whole element at rest, m3
+    std::vector<double> shares_;         // by slot; empty if all elements are whole
+    std::vector<Vec3> fibres_;           // by row, of restored elements; see stores_fibres()
+    std::vector<Vec3> rest_positions_;   // by local number, m; empty unless elements are restored
     typename LanesOf<Kernel>::Type lanes_;
     typename MemoryLanesOf<Kernel>::Type memory_lanes_;
     Sum rest_volume_;

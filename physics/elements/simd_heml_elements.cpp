@@ -86,7 +86,7 @@ void assign_groups(LinkGroups<Number>& groups, std::size_t num_elements, bool ha
 }
 
 template <class Number>
-void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkElement& element,
+void set_element(LinkGroups<Number>& groups, std::size_t i, const LinkMetric& element,
                  double share) {
     const std::size_t g = i % groups.links.size(), lane = i / groups.links.size();
     set_share(groups.shares, groups.links.size(), g, lane, share);
@@ -114,7 +114,7 @@ void SimdHemlElements::assign(std::size_t num_elements, const HemlKernel& kernel
                groups_);
 }
 
-void SimdHemlElements::set(std::size_t i, const LinkElement& element, double share) {
+void SimdHemlElements::set(std::size_t i, const LinkMetric& element, double share) {
     std::visit([&](auto& groups) { set_element(groups, i, element, share); }, groups_);
 }
 

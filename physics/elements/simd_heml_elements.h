@@ -20,7 +20,7 @@
 namespace incise::physics {
 
 struct HemlKernel;
-struct LinkElement;
+struct LinkMetric;
 
 /// What the forces of eight tetrahedra need, or of sixteen in floats: the six numbers of
 /// G = (V^T V)^-1, with the rest edges V. The 27 numbers of vtr and Mtr of the paper follow from G:
@@ -96,7 +96,7 @@ class SimdHemlElements {
     /// kernel.
     void assign(std::size_t num_elements, const HemlKernel& kernel);
     /// Sets the values of element `i`, except for its nodes.
-    void set(std::size_t i, const LinkElement& element, double share = 1.0);
+    void set(std::size_t i, const LinkMetric& element, double share = 1.0);
     /// Sets the nodes of all elements; see set_offsets_of_lanes().
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 

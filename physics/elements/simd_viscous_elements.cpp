@@ -52,7 +52,7 @@ void SimdViscousElements::assign(std::size_t num_elements, const ViscousKernel& 
     groups_.shares.clear();
 }
 
-void SimdViscousElements::set(std::size_t i, ElementId id, const LinkElement& element,
+void SimdViscousElements::set(std::size_t i, ElementId id, const LinkMetric& element,
                               double share) {
     const std::size_t g = i % groups_.elements.size(), lane = i / groups_.elements.size();
     set_share(groups_.shares, groups_.elements.size(), g, lane, share);

@@ -18,7 +18,7 @@
 
 namespace incise::physics {
 
-struct LinkElement;
+struct LinkMetric;
 struct ViscousKernel;
 
 /// One step of a term of a Prony series: H' = decay H + gain (S' - S).
@@ -72,7 +72,7 @@ class SimdViscousElements {
     void assign(std::size_t num_elements, const ViscousKernel& kernel);
     /// Sets the values of element `i`, except for its nodes.
     /// @pre  after assign(), the elements are first set in ascending order
-    void set(std::size_t i, ElementId id, const LinkElement& element, double share = 1.0);
+    void set(std::size_t i, ElementId id, const LinkMetric& element, double share = 1.0);
     /// Sets the nodes of all elements; see set_offsets_of_lanes().
     void set_nodes(std::span<const std::uint16_t> corners, std::uint16_t spare);
 

@@ -71,7 +71,7 @@ inline Carried carried_by(const Model& model, CellId cell) {
               result.energy * volume / result.volume, Vec3::Zero(),
               is_tetrahedron ? slenderness(mesh, cell) : 1.0};
     const auto corners = model.fragments().corners(e);
-    const auto& masses =
+    const auto masses =
         model.structure().elements().block_of(model.fragments(), e).contributions(e).mass;
     const double all = std::accumulate(masses.begin(), masses.end(), 0.0);
     std::size_t k = 0;

@@ -145,7 +145,7 @@ TEST(PartShares, ThatAreAllTheSameAreOneFactorToTheBit) {
             block.insert(ElementId(0), {corners, at_rest, Vec3::Zero(), share,
                                         i == 0 ? std::span<const double>() : shares});
             std::vector<std::uint16_t> numbers(corners.size(), ElementBlock::unnumbered);
-            block.number_nodes(numbers);
+            block.number_nodes(numbers, at_rest);
             forces[i].resize(corners.size() + 1);
             block.compute_forces(block.local_positions(now), ViscousHistory(0, 1), forces[i], {});
             contributions[i] = block.contributions(ElementId(0));

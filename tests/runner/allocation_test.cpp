@@ -2,6 +2,7 @@
 // the C library for. Not built for the sanitizers, which have their own.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <atomic>
@@ -10,6 +11,8 @@
 #include <thread>
 
 #include "incise/physics/elements/element_states.h"
+#include "incise/sim/world.h"
+#include "incise/topology/box_mesh.h"
 #include "run_folder.h"
 
 namespace {
@@ -209,6 +212,28 @@ TEST(SteadyState, AllocatesNothingForToolsAway) {
     EXPECT_EQ(allocations_of_steps(
                   tetrahedra + material() + tools_away + boundary_conditions + motion("double"), 1),
               0u);
+}
+
+/// Returns the bytes that the program holds.
+std::size_t num_bytes() {
+    const auto of_heap = mallinfo2();
+    return of_heap.uordblks + of_heap.hblkhd;
+}
+
+TEST(Memory, OfTetrahedraIsFewBytesAnElement) {
+    const std::size_t before = num_bytes();
+    sim::WorldDef def;
+    def.mesh = topology::box_mesh(topology::CellKind::tetrahedron, Vec3::Zero(), Vec3::Ones(),
+                                  {20, 20, 20});
+    def.materials = {{.density = 1000.0,
+                      .method = physics::HyperElasticLinks{physics::NeoHookean{1000.0, 20000.0}}}};
+    def.contact.enabled = false;
+    sim::World world(std::move(def));
+    world.step(world.stable_step());
+    const auto taken = static_cast<double>(num_bytes() - before);
+    // docs/measurements/memory.md: 450 bytes, and more for the nodes of the surface of small
+    // bodies.
+    EXPECT_LT(taken / static_cast<double>(world.mesh().num_elements()), 475.0);
 }
 
 }  // namespace
