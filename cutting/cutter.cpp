@@ -42,16 +42,32 @@ Box box_round(const std::vector<Vec3>& edge_before, const std::vector<Vec3>& edg
     return box;
 }
 
-/// Exchanges the places of some nodes, m. Returns how far they go at most, m.
-double exchange(topology::NodeField<VertexId, Vec3>& x,
-                std::vector<std::pair<VertexId, Vec3>>& places) {
-    double farthest = 0.0;
-    for (auto& [n, place] : places) {
-        farthest = std::max(farthest, (place - x[n]).norm());
-        std::swap(place, x[n]);
+/// Puts some nodes elsewhere, until the end of its life.
+class Displacement {
+  public:
+    /// @param places  where they are to be, m
+    Displacement(topology::NodeField<VertexId, Vec3>& x,
+                 std::vector<std::pair<VertexId, Vec3>> places)
+        : x_(x), places_(std::move(places)) {
+        for (const auto& [n, place] : places_)
+            farthest_ = std::max(farthest_, (place - x[n]).norm());
+        exchange();
     }
-    return farthest;
-}
+    ~Displacement() { exchange(); }
+    Displacement(const Displacement&) = delete;
+    Displacement& operator=(const Displacement&) = delete;
+    /// Returns how far they are from their own places at most, m.
+    double farthest() const { return farthest_; }
+
+  private:
+    void exchange() {
+        for (auto& [n, place] : places_) std::swap(place, x_[n]);
+    }
+
+    topology::NodeField<VertexId, Vec3>& x_;
+    std::vector<std::pair<VertexId, Vec3>> places_;
+    double farthest_ = 0.0;
+};
 
 /// Returns the mean volume of the carriers at rest, m3, of which cells are left. It is the same, to
 /// the bit, for a body that was cut and read from a file: that has the carriers in the same order.
@@ -250,11 +266,13 @@ Split Cutter::split(Mesh& mesh, const CutSurface& surface, double snap) {
             if (const auto number = known_.find(surface, opened_.usual()))
                 seen = known_.seen(mesh, surface, *number, now_, opened_.usual());
         }
-        const double farthest = exchange(now_, seen.displaced);
-        if (farthest > 0.0) boxes_.move(mesh, now_.values(), farthest);
-        Split done =
-            split_cells(mesh, motion(mesh), surface, front, resting, {&seen.on_surface, {}});
-        exchange(now_, seen.displaced);
+        Split done;
+        {
+            const Displacement displacement(now_, std::move(seen.displaced));
+            if (displacement.farthest() > 0.0)
+                boxes_.move(mesh, now_.values(), displacement.farthest());
+            done = split_cells(mesh, motion(mesh), surface, front, resting, {&seen.on_surface, {}});
+        }
         known_.note(surface, front, done.changes, now_, opened_.usual());
         return noted(std::move(done), std::nullopt);
     }
@@ -298,7 +316,7 @@ void Cutter::apply(const Mesh& mesh, const ChangeSet& changes) {
     }
 }
 
-/// Forgets the unfinished cuts through which another one goes.
+/// Forgets unfinished cuts where another one goes through them.
 /// @param is_last_own  true if the edit has made the last one
 void Cutter::forget_unfinished(const Mesh& mesh, const ChangeSet& changes, bool is_last_own) {
     if (unfinished_.empty()) return;
@@ -310,13 +328,9 @@ void Cutter::forget_unfinished(const Mesh& mesh, const ChangeSet& changes, bool 
             std::ranges::copy(mesh.corners(e), std::back_inserter(nodes));
     std::ranges::sort(nodes);
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    const auto last = unfinished_.end() - (is_last_own ? 1 : 0);
-    unfinished_.erase(std::remove_if(unfinished_.begin(), last,
-                                     [&](const LoopFront& cut) {
-                                         return std::ranges::any_of(
-                                             nodes, [&](VertexId n) { return cut.is_on(n); });
-                                     }),
-                      last);
+    for (std::size_t i = 0; i + (is_last_own ? 1 : 0) < unfinished_.size(); ++i)
+        unfinished_[i].forget(nodes);
+    std::erase_if(unfinished_, [](const LoopFront& cut) { return cut.is_empty(); });
 }
 
 std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) const {

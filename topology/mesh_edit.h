@@ -3,8 +3,8 @@
 #pragma once
 
 #include <array>
-#include <unordered_set>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "incise/topology/change_set.h"

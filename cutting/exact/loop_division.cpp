@@ -369,8 +369,12 @@ void LoopStep::close(LoopFront& front, CellId e, VertexId v, VertexId w) {
 /// Divides the cells that were to stay whole, but that the cut has come all round.
 void LoopStep::close_all() {
     only_.reset();
-    for (const CellId e : front_.open_cells())
-        for (const Edge& edge : std::vector(front_.open_edges(e))) close(front_, e, edge.a, edge.b);
+    for (std::size_t before = 0; before != mesh_.element_capacity();) {
+        before = mesh_.element_capacity();  // a part can have another closed path
+        for (const CellId e : front_.open_cells())
+            for (const Edge& edge : std::vector(front_.open_edges(e)))
+                close(front_, e, edge.a, edge.b);
+    }
 }
 
 /// Divides a face, which lies on a cut, by a node in its middle.

@@ -176,7 +176,10 @@ bool LoopFront::is_on(const Mesh& mesh) const {
                   }) &&
            all_of(open_,
                   [&](CellId e, const std::vector<Edge>& edges) {
-                      return e.index() < mesh.element_capacity() && are_there(edges);
+                      return e.index() < mesh.element_capacity() && mesh.is_alive(e) &&
+                             std::ranges::all_of(edges, [&](const Edge& edge) {
+                                 return find_dart(mesh, e, edge.a, edge.b).is_valid();
+                             });
                   }) &&
            std::ranges::all_of(passed_, [&](const PassedEdge& edge) {
                return is_there(edge.node) && is_there(edge.end);
@@ -197,6 +200,16 @@ void LoopFront::forget(VertexId n) {
     }
     switched_.erase(n);
     std::erase_if(passed_, [&](const PassedEdge& edge) { return edge.node == n || edge.end == n; });
+}
+
+void LoopFront::forget(std::span<const VertexId> nodes) {
+    for (const VertexId n : nodes) {
+        if (!is_on(n)) continue;
+        forget(n);
+        for (auto& entry : open_)
+            std::erase_if(entry.second, [&](const Edge& x) { return x.a == n || x.b == n; });
+    }
+    std::erase_if(open_, [](const auto& entry) { return entry.second.empty(); });
 }
 
 void LoopFront::apply(const Mesh& mesh, const ChangeSet& changes) {

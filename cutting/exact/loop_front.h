@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -128,6 +129,8 @@ class LoopFront {
     }
     /// Follows an edit: copies of nodes are on the cut as their sources are.
     void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+    /// Forgets the cut at some nodes.
+    void forget(std::span<const VertexId> nodes);
     /// Forgets the nodes round which nothing waits and each path is closed, if they are not at a
     /// cut face of another node.
     void leave_behind(const topology::Mesh& mesh);

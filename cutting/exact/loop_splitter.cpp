@@ -52,6 +52,21 @@ Split LoopStep::run() {
     return result;
 }
 
+/// Returns where the surface crosses an edge. One that comes again does not cross an edge at a node
+/// that it has made before. It crosses an edge with such an end, as chords are, only if the two
+/// ends are parted.
+EdgeIntersections LoopStep::new_intersections(const Edge& edge) const {
+    EdgeIntersections found = intersections_of(surface_, point(edge.a), point(edge.b), nearness);
+    const auto* known = earlier_.on_surface;
+    if (!known || found.empty()) return found;
+    const bool is_a_known = known->contains(edge.a), is_b_known = known->contains(edge.b);
+    if (is_a_known || is_b_known) found.resize(found.size() % 2);
+    std::erase_if(found, [&](const EdgeIntersection& x) {
+        return (is_a_known && x.place < nearness) || (is_b_known && x.place > 1.0 - nearness);
+    });
+    return found;
+}
+
 void LoopStep::find_crossed_edges() {
     EdgeList edges;
     std::vector<std::pair<CellId, std::size_t>> edges_of_cells;
@@ -76,12 +91,7 @@ void LoopStep::find_crossed_edges() {
     for (std::size_t i = 0; i < edges.entries().size(); ++i) {
         if (!may_be_crossed[i]) continue;
         const Edge& edge = edges.entries()[i].edge;
-        EdgeIntersections passed =
-            intersections_of(surface_, point(edge.a), point(edge.b), nearness);
-        // A chord of a surface that comes again is crossed only if its ends are parted.
-        const auto* known = earlier_.on_surface;
-        if (known && (known->contains(edge.a) || known->contains(edge.b)))
-            passed.resize(passed.size() % 2);
+        EdgeIntersections passed = new_intersections(edge);
         if (passed.empty()) continue;
         is_crossed[i] = true;
         receive(edge, std::move(passed));
@@ -136,8 +146,7 @@ void LoopStep::divide_warped_faces() {
             place_new_node(centre, sources);
             if (!may_be_crossed) continue;
             for (const auto& [corner, weight] : sources)
-                receive({corner, centre},
-                        intersections_of(surface_, point(corner), point(centre), nearness));
+                receive({corner, centre}, new_intersections({corner, centre}));
         }
     }
 }

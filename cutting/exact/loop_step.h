@@ -90,6 +90,7 @@ class LoopStep {
     }
 
     // What the surface crosses: loop_splitter.cpp.
+    EdgeIntersections new_intersections(const Edge& edge) const;
     void find_crossed_edges();
     void take_up_earlier_cuts();
     void receive(const Edge& edge, EdgeIntersections intersections);
