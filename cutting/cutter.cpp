@@ -201,6 +201,13 @@ std::vector<SuspendedCutOf<Front>> Cutter::suspended_cuts(std::optional<std::siz
     return resting;
 }
 
+/// Adds the cuts that have ended inside the body: their blades are far away.
+void Cutter::append_unfinished(std::vector<SuspendedLoops>& resting) {
+    const Vec3 far = Vec3::Constant(1e9 * opened_.usual());
+    const std::vector<Vec3> edge{far, 1.5 * far};
+    for (LoopFront& front : unfinished_) resting.push_back({front, {edge, edge}, false});
+}
+
 Split Cutter::noted(Split done, std::optional<std::size_t> worker) {
     if (!done.changes.is_empty())
         own_edit_ = {done.changes.epoch_after, worker, done.report.elements_crossed > 0};
@@ -215,6 +222,7 @@ Split Cutter::split(CutId id, Mesh& mesh, const std::vector<Vec3>& edge_before,
     if (has_loops_) {
         if (tissue.may_meet(box_round(edge_before, edge_after))) {
             auto resting = suspended_cuts(id.index, &Cut::loops);
+            append_unfinished(resting);
             done = noted(split_cells(mesh, tissue,
                                      SweptEdge(shifted(id.index, edge_before),
                                                shifted(id.index, edge_after)),
@@ -240,6 +248,7 @@ Split Cutter::end_cut(CutId id, Mesh& mesh, const fragments::FragmentMesh& fragm
     tissue.before = tissue.after;  // it rests
     if (has_loops_) {
         auto resting = suspended_cuts(id.index, &Cut::loops);
+        append_unfinished(resting);
         Split done = noted(finish_cells(mesh, fragments, tissue, blade.moved_by(shift_of(id.index)),
                                         cut.loops, resting),
                            id.index);
@@ -266,6 +275,7 @@ Split Cutter::split(Mesh& mesh, const CutSurface& surface, double snap) {
             if (const auto number = known_.find(surface, opened_.usual()))
                 seen = known_.seen(mesh, surface, *number, now_, opened_.usual());
         }
+        append_unfinished(resting);
         Split done;
         {
             const Displacement displacement(now_, std::move(seen.displaced));
@@ -312,25 +322,10 @@ void Cutter::apply(const Mesh& mesh, const ChangeSet& changes) {
     if (has_loops_) {
         opened_.apply(mesh, changes);
         known_.apply(changes);
-        forget_unfinished(mesh, changes, own.has_ended);
+        for (std::size_t i = 0; i + (own.has_ended ? 1 : 0) < unfinished_.size(); ++i)
+            unfinished_[i].apply(mesh, changes);
+        std::erase_if(unfinished_, [](const LoopFront& cut) { return cut.is_empty(); });
     }
-}
-
-/// Forgets unfinished cuts where another one goes through them.
-/// @param is_last_own  true if the edit has made the last one
-void Cutter::forget_unfinished(const Mesh& mesh, const ChangeSet& changes, bool is_last_own) {
-    if (unfinished_.empty()) return;
-    std::vector<VertexId> nodes;
-    for (const topology::CellRecord& record : changes.elements_removed)
-        std::ranges::copy(record.corners, std::back_inserter(nodes));
-    for (const CellId e : topology::touched_cells(changes))
-        if (e.index() < mesh.element_capacity() && mesh.is_alive(e))
-            std::ranges::copy(mesh.corners(e), std::back_inserter(nodes));
-    std::ranges::sort(nodes);
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    for (std::size_t i = 0; i + (is_last_own ? 1 : 0) < unfinished_.size(); ++i)
-        unfinished_[i].forget(nodes);
-    std::erase_if(unfinished_, [](const LoopFront& cut) { return cut.is_empty(); });
 }
 
 std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) const {

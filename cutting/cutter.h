@@ -169,8 +169,7 @@ class Cutter {
         return {mesh, before_.values(), now_.values(), &boxes_};
     }
     Split noted(Split done, std::optional<std::size_t> worker);
-    void forget_unfinished(const topology::Mesh& mesh, const topology::ChangeSet& changes,
-                           bool is_last_own);
+    void append_unfinished(std::vector<SuspendedLoops>& resting);
 
     topology::ElementBoxes boxes_;
     SnapHistory snap_history_;
