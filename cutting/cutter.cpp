@@ -201,11 +201,13 @@ std::vector<SuspendedCutOf<Front>> Cutter::suspended_cuts(std::optional<std::siz
     return resting;
 }
 
-/// Adds the cuts that have ended inside the body: their blades are far away.
-void Cutter::append_unfinished(std::vector<SuspendedLoops>& resting) {
+/// Returns the cuts that have ended inside the body: their blades are far away.
+std::vector<SuspendedLoops> Cutter::unfinished_cuts() {
     const Vec3 far = Vec3::Constant(1e9 * opened_.usual());
     const std::vector<Vec3> edge{far, 1.5 * far};
-    for (LoopFront& front : unfinished_) resting.push_back({front, {edge, edge}, false});
+    std::vector<SuspendedLoops> cuts;
+    for (LoopFront& front : unfinished_) cuts.push_back({front, {edge, edge}, false});
+    return cuts;
 }
 
 Split Cutter::noted(Split done, std::optional<std::size_t> worker) {
@@ -222,11 +224,11 @@ Split Cutter::split(CutId id, Mesh& mesh, const std::vector<Vec3>& edge_before,
     if (has_loops_) {
         if (tissue.may_meet(box_round(edge_before, edge_after))) {
             auto resting = suspended_cuts(id.index, &Cut::loops);
-            append_unfinished(resting);
+            auto unfinished = unfinished_cuts();
             done = noted(split_cells(mesh, tissue,
                                      SweptEdge(shifted(id.index, edge_before),
                                                shifted(id.index, edge_after)),
-                                     cut.loops, resting, {nullptr, unfinished_}),
+                                     cut.loops, resting, {nullptr, unfinished}),
                          id.index);
             std::erase_if(unfinished_, [](const LoopFront& front) { return front.is_empty(); });
         }
@@ -248,9 +250,9 @@ Split Cutter::end_cut(CutId id, Mesh& mesh, const fragments::FragmentMesh& fragm
     tissue.before = tissue.after;  // it rests
     if (has_loops_) {
         auto resting = suspended_cuts(id.index, &Cut::loops);
-        append_unfinished(resting);
+        auto unfinished = unfinished_cuts();
         Split done = noted(finish_cells(mesh, fragments, tissue, blade.moved_by(shift_of(id.index)),
-                                        cut.loops, resting),
+                                        cut.loops, resting, {nullptr, unfinished}),
                            id.index);
         if (!cut.loops.is_empty()) {
             unfinished_.push_back(std::exchange(cut.loops, {}));
@@ -275,13 +277,14 @@ Split Cutter::split(Mesh& mesh, const CutSurface& surface, double snap) {
             if (const auto number = known_.find(surface, opened_.usual()))
                 seen = known_.seen(mesh, surface, *number, now_, opened_.usual());
         }
-        append_unfinished(resting);
+        auto unfinished = unfinished_cuts();
         Split done;
         {
             const Displacement displacement(now_, std::move(seen.displaced));
             if (displacement.farthest() > 0.0)
                 boxes_.move(mesh, now_.values(), displacement.farthest());
-            done = split_cells(mesh, motion(mesh), surface, front, resting, {&seen.on_surface, {}});
+            done = split_cells(mesh, motion(mesh), surface, front, resting,
+                               {&seen.on_surface, unfinished});
         }
         known_.note(surface, front, done.changes, now_, opened_.usual());
         return noted(std::move(done), std::nullopt);

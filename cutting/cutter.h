@@ -169,7 +169,7 @@ class Cutter {
         return {mesh, before_.values(), now_.values(), &boxes_};
     }
     Split noted(Split done, std::optional<std::size_t> worker);
-    void append_unfinished(std::vector<SuspendedLoops>& resting);
+    std::vector<SuspendedLoops> unfinished_cuts();
 
     topology::ElementBoxes boxes_;
     SnapHistory snap_history_;

@@ -32,7 +32,7 @@ bool is_plane(const Mesh& mesh, FaceId f) {
 Split LoopStep::run() {
     find_crossed_edges();
     if (pending_.empty()) return {};
-    take_up_earlier_cuts();
+    meet_earlier_cuts();
     edit_.emplace(mesh_);
     divide_warped_faces();
     passes_left_ = most_passes(crossed_.size());
@@ -102,23 +102,35 @@ void LoopStep::find_crossed_edges() {
         std::ranges::count_if(crossed_, [&](CellId e) { return !stays_whole(e); }));
 }
 
-/// Goes on with those earlier cuts to nodes of which the surface comes.
-void LoopStep::take_up_earlier_cuts() {
-    if (!is_swept_) return;
-    for (LoopFront& cut : earlier_.unfinished) {
-        const bool is_met = std::ranges::any_of(pending_, [&](const auto& entry) {
-            const auto& [edge, intersections] = entry;
-            if (cut.is_marked(edge.a, edge.b)) return true;
-            const double length = rest_length(edge.a, edge.b);
-            return std::ranges::any_of(intersections, [&](const EdgeIntersection& x) {
-                return (cut.is_on(edge.a) &&
-                        x.place * length < nearness * cut.local_edge_length(edge.a)) ||
-                       (cut.is_on(edge.b) &&
-                        (1.0 - x.place) * length < nearness * cut.local_edge_length(edge.b));
-            });
+/// Goes on with those earlier cuts to nodes of which the blade comes. Others are as if suspended
+/// where this one comes to their cells.
+void LoopStep::meet_earlier_cuts() {
+    for (SuspendedLoops& cut : earlier_.unfinished) {
+        const bool is_at_cut = std::ranges::any_of(crossed_, [&](CellId e) {
+            return std::ranges::any_of(mesh_.corners(e),
+                                       [&](VertexId n) { return cut.front.is_on(n); });
         });
-        if (is_met && front_.add(cut)) cut = {};
+        if (!is_at_cut) continue;
+        if (is_swept_ && !only_ && comes_to_node_of(cut.front) && front_.add(cut.front))
+            cut.front = {};
+        else
+            resting_.push_back(cut);
     }
+}
+
+/// True if the surface crosses an edge at a node of another cut.
+bool LoopStep::comes_to_node_of(const LoopFront& cut) const {
+    return std::ranges::any_of(pending_, [&](const auto& entry) {
+        const auto& [edge, intersections] = entry;
+        if (cut.is_marked(edge.a, edge.b)) return true;
+        const double length = rest_length(edge.a, edge.b);
+        return std::ranges::any_of(intersections, [&](const EdgeIntersection& x) {
+            return (cut.is_on(edge.a) &&
+                    x.place * length < nearness * cut.local_edge_length(edge.a)) ||
+                   (cut.is_on(edge.b) &&
+                    (1.0 - x.place) * length < nearness * cut.local_edge_length(edge.b));
+        });
+    });
 }
 
 void LoopStep::receive(const Edge& edge, EdgeIntersections intersections) {
@@ -222,12 +234,13 @@ Split split_cells(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surf
 }
 
 Split finish_cells(Mesh& mesh, const fragments::FragmentMesh& fragments, const TissueMotion& tissue,
-                   const BladeEnd& blade, LoopFront& front, std::span<SuspendedLoops> resting) {
+                   const BladeEnd& blade, LoopFront& front, std::span<SuspendedLoops> resting,
+                   const EarlierCuts& earlier) {
     if (front.is_empty()) return {};
     const BladeEnd end = away_from_cut(blade, nodes_of(front, mesh, tissue.after));
     const BladePlace place = place_of(end, tissue, fragments);
     Split result = LoopStep(mesh, tissue, end.continuation(place.exit_distance), front, resting,
-                            cells_to_part(end, place, mesh, tissue.after, front))
+                            cells_to_part(end, place, mesh, tissue.after, front), earlier)
                        .run();
     front.draw_back(mesh);
     return result;

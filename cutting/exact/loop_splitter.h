@@ -22,9 +22,9 @@ using SuspendedLoops = SuspendedCutOf<LoopFront>;
 /// What cuts that are over have left.
 struct EarlierCuts {
     const std::unordered_set<VertexId>* on_surface = nullptr;  ///< nodes that the surface has made
-    /// Cuts that have ended inside the body. A blade that comes to a node of such a cut goes on
-    /// with it.
-    std::span<LoopFront> unfinished;
+    /// Cuts that have ended inside the body, with blades far away. A blade that comes to a node of
+    /// such a cut goes on with it.
+    std::span<SuspendedLoops> unfinished;
 };
 
 /// Cuts along a surface, or along what a blade's edge sweeps in this step. A crossed cell becomes
@@ -48,9 +48,10 @@ Split split_cells(topology::Mesh& mesh, const TissueMotion& tissue, const CutSur
 /// has passed by half or more are parted along the straight continuation of its path, and the
 /// others stay whole. Returns the edit, which may be empty.
 /// @param fragments  of the mesh
+/// @param earlier    cuts that are over, of which none is taken up
 /// Cost: as split_cells(), and the search for the cells at the blade's edge.
 Split finish_cells(topology::Mesh& mesh, const fragments::FragmentMesh& fragments,
                    const TissueMotion& tissue, const BladeEnd& blade, LoopFront& front,
-                   std::span<SuspendedLoops> resting);
+                   std::span<SuspendedLoops> resting, const EarlierCuts& earlier = {});
 
 }  // namespace incise::cutting

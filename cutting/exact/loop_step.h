@@ -31,7 +31,7 @@ class LoopStep {
           tissue_(tissue),
           surface_(surface),
           front_(front),
-          resting_(resting),
+          resting_(resting.begin(), resting.end()),
           only_(std::move(only)),
           earlier_(earlier),
           is_swept_(surface.is_swept()),
@@ -92,7 +92,8 @@ class LoopStep {
     // What the surface crosses: loop_splitter.cpp.
     EdgeIntersections new_intersections(const Edge& edge) const;
     void find_crossed_edges();
-    void take_up_earlier_cuts();
+    void meet_earlier_cuts();
+    bool comes_to_node_of(const LoopFront& cut) const;
     void receive(const Edge& edge, EdgeIntersections intersections);
     void divide_pending(const Edge& edge, VertexId middle, double place);
     void divide_warped_faces();
@@ -144,7 +145,7 @@ class LoopStep {
     const TissueMotion& tissue_;
     const CutSurface& surface_;
     LoopFront& front_;
-    const std::span<SuspendedLoops> resting_;
+    std::vector<SuspendedLoops> resting_;
     std::optional<std::unordered_set<CellId>> only_;  // if set, this cut leaves other cells whole
     const EarlierCuts earlier_;
     const bool is_swept_;

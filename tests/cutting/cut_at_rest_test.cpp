@@ -286,6 +286,36 @@ TEST(CutAtRest, OfStrokesThatGoDeeperIsThatOfOneStroke) {
     }
 }
 
+// A stroke that ends inside the body, a plane across it, and the stroke again.
+TEST(CutAtRest, OfAStrokeAgainAfterAnotherCutFreesNoMoreThanCrumbs) {
+    for (const auto& [name, data] : cubes(4)) {
+        if (name.starts_with("tetrahedra")) continue;
+        for (int seed = 0; seed < test::num_cases(4); ++seed) {
+            SCOPED_TRACE(name + ", seed " + std::to_string(seed));
+            test::Random random(950 + static_cast<std::uint64_t>(seed));
+            const Vec3 point = Vec3::Constant(0.5) + random.vector(0.1);
+            const Vec3 normal = random.vector(1.0).normalized();
+            const Vec3 along = normal.unitOrthogonal(), ahead = normal.cross(along);
+            Sweep sweep;
+            for (const double at : {-2.0, -0.3, 0.05})
+                sweep.poses.push_back(
+                    {point + at * ahead - 2.0 * along, point + at * ahead + 2.0 * along});
+            const RestTool stroke{"stroke", sweep};
+            const RestTool across{"across", PlaneCut{point, along + random.vector(0.3)}};
+            Mesh mesh = Mesh::build(data).mesh;
+            const auto report = cut_at_rest(
+                mesh, std::vector{stroke, across, stroke, stroke, stroke, stroke}, CutMode::split);
+            constexpr double largest_crumb = 1e-3;
+            EXPECT_EQ(
+                std::ranges::count_if(
+                    report.pieces, [](const Piece& piece) { return piece.volume > largest_crumb; }),
+                2);
+            EXPECT_LT(report.tools.back().counts.cut_area, 1e-3);
+            EXPECT_LE(report.volume_error(), 1e-13);
+        }
+    }
+}
+
 // They also have nodes of earlier poses, and sides that keep their nodes.
 TEST(CutAtRest, OfSeveralPosesKnowsAllFacesThatItOpens) {
     for (const auto& [name, data] : cubes(4))
