@@ -115,6 +115,8 @@ class LoopFront {
     /// Follows the blade out of the body, the way it came: passes edges at nodes of the cut, so
     /// that the cut comes into each face as often as it goes out. Another blade may then come.
     void draw_back(const topology::Mesh& mesh);
+    /// True if draw_back() has done something: the blade was in the body.
+    bool is_drawn_back() const { return is_drawn_back_; }
     /// Adds another cut, with no common nodes. Returns false, and changes nothing, if there are.
     bool add(const LoopFront& other);
 
@@ -136,7 +138,8 @@ class LoopFront {
     void leave_behind(const topology::Mesh& mesh);
 
     static void archive(auto& ar, auto& self) {
-        ar(self.nodes_, self.marked_, self.switched_, self.open_, self.passed_);
+        ar(self.nodes_, self.marked_, self.switched_, self.open_, self.passed_,
+           self.is_drawn_back_);
     }
 
   private:
@@ -148,6 +151,7 @@ class LoopFront {
     std::unordered_map<VertexId, std::vector<Edge>> switched_;    // the neighbours at the corners
     std::unordered_map<CellId, std::vector<Edge>> open_;
     std::vector<PassedEdge> passed_;
+    bool is_drawn_back_ = false;
 };
 
 }  // namespace incise::cutting
