@@ -141,7 +141,9 @@ class Divider {
 
     FaceDivision division_of(SourceFace f, const std::vector<std::int64_t>& points) {
         FaceDivision division;
-        if (!diagonals_.empty() && diagonals_[f.cell].divides(f.face)) {
+        // A polyhedron may have more faces than diagonals have bits for, and has none.
+        if (!diagonals_.empty() && !diagonals_[f.cell].is_none() &&
+            diagonals_[f.cell].divides(f.face)) {
             const auto at = [&](int p) {
                 return points[static_cast<std::size_t>((diagonals_[f.cell].first_end(f.face) + p) %
                                                        4)];
