@@ -219,7 +219,10 @@ void LoopFront::apply(const Mesh& mesh, const ChangeSet& changes) {
         if (record.num_sources != 1) continue;
         const VertexId source = record.sources[0].node;
         copies[source].push_back(record.id);
-        if (is_on(source)) put_on(record.id, local_edge_length(source));
+        if (const auto it = nodes_.find(source); it != nodes_.end()) {
+            const Node node = it->second;
+            nodes_.try_emplace(record.id, node);
+        }
     }
     if (!copies.empty()) {
         const auto all_of = [&](VertexId n) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -33,11 +34,13 @@ class LoopFront {
   public:
     struct Node {
         double local_edge_length = 0.0;  ///< of the edge on which it was made, at rest, m
-        static void archive(auto& ar, auto& self) { ar(self.local_edge_length); }
+        /// Where it was when the blade was taken out, m; not a number until follow_motion().
+        Vec3 place = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+        static void archive(auto& ar, auto& self) { ar(self.local_edge_length, self.place); }
     };
 
     void put_on(VertexId n, double local_edge_length) {
-        nodes_.try_emplace(n, Node{local_edge_length});
+        nodes_.try_emplace(n, Node{local_edge_length, Node().place});
     }
     bool is_on(VertexId n) const { return nodes_.contains(n); }
     double local_edge_length(VertexId n) const {
@@ -115,8 +118,12 @@ class LoopFront {
     /// Follows the blade out of the body, the way it came: passes edges at nodes of the cut, so
     /// that the cut comes into each face as often as it goes out. Another blade may then come.
     void draw_back(const topology::Mesh& mesh);
-    /// True if draw_back() has done something: the blade was in the body.
-    bool is_drawn_back() const { return is_drawn_back_; }
+    /// Follows a motion of the body after draw_back(). Cost: proportional to the nodes of the cut.
+    /// @param positions  by vertex id, m
+    void follow_motion(std::span<const Vec3> positions);
+    /// True if the blade was in the body at draw_back(), and nodes have moved since: one by more
+    /// than a thousandth of the edge on which it was made.
+    bool has_moved() const { return has_moved_; }
     /// Adds another cut, with no common nodes. Returns false, and changes nothing, if there are.
     bool add(const LoopFront& other);
 
@@ -138,8 +145,8 @@ class LoopFront {
     void leave_behind(const topology::Mesh& mesh);
 
     static void archive(auto& ar, auto& self) {
-        ar(self.nodes_, self.marked_, self.switched_, self.open_, self.passed_,
-           self.is_drawn_back_);
+        ar(self.nodes_, self.marked_, self.switched_, self.open_, self.passed_, self.is_drawn_back_,
+           self.has_moved_);
     }
 
   private:
@@ -151,7 +158,7 @@ class LoopFront {
     std::unordered_map<VertexId, std::vector<Edge>> switched_;    // the neighbours at the corners
     std::unordered_map<CellId, std::vector<Edge>> open_;
     std::vector<PassedEdge> passed_;
-    bool is_drawn_back_ = false;
+    bool is_drawn_back_ = false, has_moved_ = false;
 };
 
 }  // namespace incise::cutting

@@ -118,21 +118,20 @@ void LoopStep::meet_earlier_cuts() {
     }
 }
 
-/// True if the surface crosses an edge at a node of another cut. Where the blade of that was taken
-/// out, it has to come exactly there: in tissue that has moved, it could else take some of the cut
-/// for its own and not the rest, and leave cells between the two whole.
+/// True if the surface crosses an edge at a node of another cut. In tissue that has moved since the
+/// blade of that was taken out, a blade could take some of the cut for its own and not the rest,
+/// and leave cells between the two whole: then it makes a cut of its own.
 bool LoopStep::comes_to_node_of(const LoopFront& cut) const {
-    constexpr double same_place = 1e-3;
-    const double tolerance = cut.is_drawn_back() ? same_place : nearness;
+    if (cut.has_moved()) return false;
     return std::ranges::any_of(pending_, [&](const auto& entry) {
         const auto& [edge, intersections] = entry;
-        if (!cut.is_drawn_back() && cut.is_marked(edge.a, edge.b)) return true;
+        if (cut.is_marked(edge.a, edge.b)) return true;
         const double length = rest_length(edge.a, edge.b);
         return std::ranges::any_of(intersections, [&](const EdgeIntersection& x) {
             return (cut.is_on(edge.a) &&
-                    x.place * length < tolerance * cut.local_edge_length(edge.a)) ||
+                    x.place * length < nearness * cut.local_edge_length(edge.a)) ||
                    (cut.is_on(edge.b) &&
-                    (1.0 - x.place) * length < tolerance * cut.local_edge_length(edge.b));
+                    (1.0 - x.place) * length < nearness * cut.local_edge_length(edge.b));
         });
     });
 }

@@ -52,8 +52,7 @@ void LoopFront::draw_back(const Mesh& mesh) {
     for (const auto& entry : nodes_)
         if (mesh.is_alive(entry.first)) nodes.push_back(entry.first);
     std::ranges::sort(nodes);
-    std::map<std::pair<VertexId, VertexId>, std::size_t>
-        numbers;  // of edges, from nodes on the cut
+    std::map<std::pair<VertexId, VertexId>, std::size_t> numbers;  // of edges at nodes on the cut
     EdgeSides sides;
     const auto number = [&](VertexId n, VertexId end) {
         const auto [it, is_new] = numbers.try_emplace({n, end}, numbers.size());
@@ -88,11 +87,23 @@ void LoopFront::draw_back(const Mesh& mesh) {
                     if (mesh.face_corner(f, p) == n) relate_in(f, p);
             }
     }
+    is_drawn_back_ = has_moved_ = false;
+    for (auto& [n, node] : nodes_) node.place = Node().place;
     for (const auto& [edge, i] : numbers) {
         if (!sides.is_other(i)) continue;
         is_drawn_back_ = true;
         const auto [n, end] = edge;
         toggle_passed(passed_at(n, end) == end ? PassedEdge{end, n} : PassedEdge{n, end});
+    }
+}
+
+void LoopFront::follow_motion(std::span<const Vec3> positions) {
+    constexpr double share = 1e-3;
+    if (!is_drawn_back_ || has_moved_) return;
+    for (auto& [n, node] : nodes_) {
+        const Vec3& x = positions[n.index()];
+        if (!node.place.allFinite()) node.place = x;
+        has_moved_ |= (x - node.place).norm() > share * node.local_edge_length;
     }
 }
 

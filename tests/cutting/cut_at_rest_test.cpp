@@ -251,68 +251,103 @@ TEST(CutAtRest, OfTheSameToolAgainChangesNothing) {
         }
 }
 
-// Strokes that end inside the body, and one that goes on with their cut.
-TEST(CutAtRest, OfStrokesThatGoDeeperIsThatOfOneStroke) {
-    for (const auto& [name, data] : cubes(4)) {
-        if (name.starts_with("tetrahedra")) continue;
-        for (int seed = 0; seed < test::num_cases(8); ++seed) {
-            SCOPED_TRACE(name + ", seed " + std::to_string(seed));
-            test::Random random(900 + static_cast<std::uint64_t>(seed));
-            const Vec3 point = Vec3::Constant(0.5) + random.vector(0.1);
-            const Vec3 normal = random.vector(1.0).normalized();
-            const Vec3 along = normal.unitOrthogonal(), ahead = normal.cross(along);
-            const auto stroke = [&](double to) {
-                Sweep sweep;
-                for (const double at : {-2.0, -0.3, to})
-                    sweep.poses.push_back(
-                        {point + at * ahead - 2.0 * along, point + at * ahead + 2.0 * along});
-                return RestTool{"stroke", sweep};
-            };
-            const double first = random.uniform(-0.25, 0.1);
-            const double second = first + random.uniform(0.02, 0.3);
-            Mesh once = Mesh::build(data).mesh, deeper = once;
-            const auto whole = cut_at_rest(once, std::vector{stroke(2.0)}, CutMode::split);
-            const auto parts = cut_at_rest(
-                deeper, std::vector{stroke(first), stroke(second), stroke(2.0)}, CutMode::split);
-            ASSERT_EQ(whole.pieces.size(), 2u);
-            ASSERT_GE(parts.pieces.size(), 2u);
-            // Where cells are small, a crumb may come off.
-            constexpr double largest_crumb = 1e-3;
-            for (std::size_t p = 0; p < 2; ++p)
-                EXPECT_NEAR(parts.pieces[p].volume, whole.pieces[p].volume, largest_crumb);
-            EXPECT_NEAR(parts.total.cut_area, whole.total.cut_area, 0.01 * whole.total.cut_area);
-            EXPECT_LE(parts.volume_error(), 1e-13);
+/// Strokes of one blade, which is wider than the body.
+struct Strokes {
+    Vec3 point = Vec3::Zero(), along = Vec3::UnitY(), ahead = -Vec3::UnitZ();
+
+    /// Through a place near the middle of the unit cube, in any direction.
+    static Strokes random(test::Random& random) {
+        const Vec3 point = Vec3::Constant(0.5) + random.vector(0.1);
+        const Vec3 normal = random.vector(1.0).normalized(), along = normal.unitOrthogonal();
+        return {point, along, normal.cross(along)};
+    }
+    /// From outside up to a distance from the point, m.
+    RestTool to(double end) const {
+        Sweep sweep;
+        for (const double at : {-2.0, -0.3, end})
+            sweep.poses.push_back(
+                {point + at * ahead - 2.0 * along, point + at * ahead + 2.0 * along});
+        return {"stroke", sweep};
+    }
+};
+
+/// Calls test(cube, random) for bodies of all kinds of cells but tetrahedra alone.
+template <class Test>
+void for_cells_of_any_shape(int num_seeds, std::uint64_t first_seed, Test test) {
+    for (const Cube& cube : cubes(4)) {
+        if (cube.name.starts_with("tetrahedra")) continue;
+        for (int seed = 0; seed < test::num_cases(num_seeds); ++seed) {
+            SCOPED_TRACE(cube.name + ", seed " + std::to_string(seed));
+            test::Random random(first_seed + static_cast<std::uint64_t>(seed));
+            test(cube, random);
         }
     }
 }
 
+constexpr double largest_crumb = 1e-3;  // m3
+
+// Strokes that end inside the body, and one that goes on with their cut.
+TEST(CutAtRest, OfStrokesThatGoDeeperIsThatOfOneStroke) {
+    for_cells_of_any_shape(8, 900, [](const Cube& cube, test::Random& random) {
+        const Strokes strokes = Strokes::random(random);
+        const double first = random.uniform(-0.25, 0.1);
+        const double second = first + random.uniform(0.02, 0.3);
+        Mesh once = Mesh::build(cube.data).mesh, deeper = once;
+        const auto whole = cut_at_rest(once, std::vector{strokes.to(2.0)}, CutMode::split);
+        const auto parts =
+            cut_at_rest(deeper, std::vector{strokes.to(first), strokes.to(second), strokes.to(2.0)},
+                        CutMode::split);
+        ASSERT_EQ(whole.pieces.size(), 2u);
+        ASSERT_GE(parts.pieces.size(), 2u);
+        // Where cells are small, a crumb may come off.
+        for (std::size_t p = 0; p < 2; ++p)
+            EXPECT_NEAR(parts.pieces[p].volume, whole.pieces[p].volume, largest_crumb);
+        EXPECT_NEAR(parts.total.cut_area, whole.total.cut_area, 0.01 * whole.total.cut_area);
+        EXPECT_LE(parts.volume_error(), 1e-13);
+    });
+}
+
 // A stroke that ends inside the body, a plane across it, and the stroke again.
 TEST(CutAtRest, OfAStrokeAgainAfterAnotherCutFreesNoMoreThanCrumbs) {
-    for (const auto& [name, data] : cubes(4)) {
-        if (name.starts_with("tetrahedra")) continue;
-        for (int seed = 0; seed < test::num_cases(4); ++seed) {
-            SCOPED_TRACE(name + ", seed " + std::to_string(seed));
-            test::Random random(950 + static_cast<std::uint64_t>(seed));
-            const Vec3 point = Vec3::Constant(0.5) + random.vector(0.1);
-            const Vec3 normal = random.vector(1.0).normalized();
-            const Vec3 along = normal.unitOrthogonal(), ahead = normal.cross(along);
-            Sweep sweep;
-            for (const double at : {-2.0, -0.3, 0.05})
-                sweep.poses.push_back(
-                    {point + at * ahead - 2.0 * along, point + at * ahead + 2.0 * along});
-            const RestTool stroke{"stroke", sweep};
-            const RestTool across{"across", PlaneCut{point, along + random.vector(0.3)}};
-            Mesh mesh = Mesh::build(data).mesh;
-            const auto report = cut_at_rest(
-                mesh, std::vector{stroke, across, stroke, stroke, stroke, stroke}, CutMode::split);
-            constexpr double largest_crumb = 1e-3;
-            EXPECT_EQ(
-                std::ranges::count_if(
-                    report.pieces, [](const Piece& piece) { return piece.volume > largest_crumb; }),
-                2);
-            EXPECT_LT(report.tools.back().counts.cut_area, 1e-3);
-            EXPECT_LE(report.volume_error(), 1e-13);
-        }
+    for_cells_of_any_shape(4, 950, [](const Cube& cube, test::Random& random) {
+        const Strokes strokes = Strokes::random(random);
+        const RestTool stroke = strokes.to(0.05);
+        const RestTool across{"across",
+                              PlaneCut{strokes.point, strokes.along + random.vector(0.3)}};
+        Mesh mesh = Mesh::build(cube.data).mesh;
+        const auto report = cut_at_rest(
+            mesh, std::vector{stroke, across, stroke, stroke, stroke, stroke}, CutMode::split);
+        const auto is_large = [](const Piece& piece) { return piece.volume > largest_crumb; };
+        EXPECT_EQ(std::ranges::count_if(report.pieces, is_large), 2);
+        EXPECT_LT(report.tools.back().counts.cut_area, 1e-3);
+        EXPECT_LE(report.volume_error(), 1e-13);
+    });
+}
+
+// In planes of the mesh and beside them, with ends on its nodes and between; in bodies of bricks.
+TEST(CutAtRest, OfStrokesAgainInPlanesOfTheMeshChangesNothing) {
+    constexpr double brick = 0.25;
+    for (const Cube& cube : cubes(4)) {
+        if (cube.name.starts_with("tetrahedra") || cube.name.ends_with("0.200000")) continue;
+        for (const double beside : {0.0, 0.3 * brick})
+            for (const double ahead : {0.0, 0.5 * brick}) {
+                SCOPED_TRACE(cube.name + ", beside " + std::to_string(beside) + ", ahead " +
+                             std::to_string(ahead));
+                const Strokes strokes{{0.5 + beside, 0.5, 0.5}};
+                const RestTool stroke = strokes.to(ahead);
+                Mesh mesh = Mesh::build(cube.data).mesh, deeper = mesh;
+                const auto again =
+                    cut_at_rest(mesh, std::vector{stroke, stroke, stroke}, CutMode::split);
+                EXPECT_GT(again.tools[0].counts.faces_opened, 0u);
+                EXPECT_EQ(again.tools[1].counts.faces_opened, 0u);
+                EXPECT_EQ(again.tools[2].counts.faces_opened, 0u);
+                const auto parted = cut_at_rest(
+                    deeper, std::vector{stroke, strokes.to(ahead + brick), strokes.to(2.0)},
+                    CutMode::split);
+                ASSERT_GE(parted.pieces.size(), 2u);
+                EXPECT_NEAR(parted.pieces[0].volume, 0.5 + beside, 3e-3);
+                EXPECT_NEAR(parted.pieces[1].volume, 0.5 - beside, 3e-3);
+            }
     }
 }
 
