@@ -111,27 +111,36 @@ void LoopStep::meet_earlier_cuts() {
                                        [&](VertexId n) { return cut.front.is_on(n); });
         });
         if (!is_at_cut) continue;
-        if (is_swept_ && !only_ && comes_to_node_of(cut.front) && front_.add(cut.front))
+        if (is_swept_ && !only_ && goes_along(cut.front) && front_.add(cut.front))
             cut.front = {};
         else
             resting_.push_back(cut);
     }
 }
 
-/// True if the surface crosses an edge at a node of another cut. In tissue that has moved since the
+/// True if the surface goes along another cut at a node of that. In tissue that has moved since the
 /// blade of that was taken out, a blade could take some of the cut for its own and not the rest,
 /// and leave cells between the two whole: then it makes a cut of its own.
-bool LoopStep::comes_to_node_of(const LoopFront& cut) const {
+bool LoopStep::goes_along(const LoopFront& cut) const {
     if (cut.has_moved()) return false;
+    const auto is_along = [&](VertexId n, const Vec3& normal) {
+        constexpr double largest_sine = 0.1;
+        return std::ranges::all_of(cut.marked_at(n), [&](VertexId other) {
+            const Vec3 d = point(other)[1] - point(n)[1];
+            const double noise = nearness * cut.local_edge_length(n);  // of the places of nodes
+            return std::abs(normal.dot(d)) <= std::max(largest_sine * d.norm(), noise);
+        });
+    };
     return std::ranges::any_of(pending_, [&](const auto& entry) {
         const auto& [edge, intersections] = entry;
-        if (cut.is_marked(edge.a, edge.b)) return true;
+        const bool is_marked = cut.is_marked(edge.a, edge.b);
         const double length = rest_length(edge.a, edge.b);
         return std::ranges::any_of(intersections, [&](const EdgeIntersection& x) {
-            return (cut.is_on(edge.a) &&
-                    x.place * length < nearness * cut.local_edge_length(edge.a)) ||
-                   (cut.is_on(edge.b) &&
-                    (1.0 - x.place) * length < nearness * cut.local_edge_length(edge.b));
+            const auto is_met = [&](VertexId n, double share) {
+                return cut.is_on(n) && is_along(n, x.normal) &&
+                       (is_marked || share * length < nearness * cut.local_edge_length(n));
+            };
+            return is_met(edge.a, x.place) || is_met(edge.b, 1.0 - x.place);
         });
     });
 }

@@ -93,7 +93,7 @@ class LoopStep {
     EdgeIntersections new_intersections(const Edge& edge) const;
     void find_crossed_edges();
     void meet_earlier_cuts();
-    bool comes_to_node_of(const LoopFront& cut) const;
+    bool goes_along(const LoopFront& cut) const;
     void receive(const Edge& edge, EdgeIntersections intersections);
     void divide_pending(const Edge& edge, VertexId middle, double place);
     void divide_warped_faces();
