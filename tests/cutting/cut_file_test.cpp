@@ -179,6 +179,7 @@ MeshData cut_through_files(const MeshData& data, const std::vector<RestTool>& to
     return now;
 }
 
+// Of the tools only the last may end inside the body: files do not hold cuts that have ended there.
 TEST(CutFiles, LetFurtherCutsHaveTheSameBits) {
     const support::TemporaryFolder folder;
     std::size_t num_bodies = 0;
@@ -188,7 +189,9 @@ TEST(CutFiles, LetFurtherCutsHaveTheSameBits) {
             test::Random random(100 + seed);
             std::vector<RestTool> tools;
             for (int i = 0; i < 3; ++i)
-                tools.push_back(random.below(2) == 0 ? random_plane(random) : random_blade(random));
+                tools.push_back(random.below(2) == 0 ? random_plane(random)
+                                : i == 2             ? random_blade(random)
+                                                     : random_blade(random, 2.0));
             if (seed % 4 == 0) tools.back() = tools.front();  // along a finished cut
             Mesh mesh = Mesh::build(body.data).mesh;
             const MeshData at_once = cut_at_rest(mesh, tools, CutMode::split).mesh;
