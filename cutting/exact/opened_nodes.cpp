@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <unordered_set>
 
 #include "incise/cutting/exact/shortest_inside.h"
 #include "incise/cutting/exact/split.h"
@@ -193,6 +194,7 @@ void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes) {
         // At the end of a cut, both of its sides meet.
         constexpr double least_share = 0.1;
         if (!(outwards.norm() > least_share * area)) continue;
+        std::ranges::sort(node.around);  // so that sums do not depend on the order of the cells
         node.margin = margin_of(mesh, n, usual_);
         nodes_[n] = std::move(node);
     }
@@ -208,10 +210,15 @@ void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
     std::vector<VertexId> chosen(unsettled_.begin() + static_cast<std::ptrdiff_t>(begin),
                                  unsettled_.end());
     unsettled_.resize(begin);
-    // A node that is settled may have planes whose corners an edit beside it has replaced.
-    for (const VertexId n : std::vector(chosen))
-        for (const VertexId other : near_to(mesh, n, 2.0 * margin_of(mesh, n, usual_)).nodes)
-            if (nodes_.contains(other)) chosen.push_back(other);
+    // What a node sees reaches as far as the cells joined to those at nodes near it.
+    std::unordered_set<CellId> seen;
+    std::vector<VertexId> more;
+    for (const VertexId n : chosen)
+        for (const CellId e : near_to(mesh, n, 2.0 * default_snap * usual_).cells)
+            if (seen.insert(e).second)
+                std::ranges::copy_if(mesh.corners(e), std::back_inserter(more),
+                                     [&](VertexId other) { return nodes_.contains(other); });
+    chosen.insert(chosen.end(), more.begin(), more.end());
     std::ranges::sort(chosen);
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     std::unordered_map<CellId, std::vector<Face>> faces_of;
@@ -231,7 +238,10 @@ void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
                 if (is_within(mesh, face, mesh.rest_position(n), 2.0 * node.margin))
                     faces.push_back(face);
         }
-        std::ranges::stable_sort(faces, std::greater(), &Face::width);
+        // In an order that does not depend on that of the cells at a node, which a file forgets.
+        std::ranges::sort(faces, [](const Face& a, const Face& b) {
+            return a.width != b.width ? a.width > b.width : a.corners < b.corners;
+        });
         std::vector<InnerSide> spaces;
         node.planes.clear();
         for (const Face& face : faces) {
