@@ -126,7 +126,6 @@ void Cutter::follow_motion(const Mesh& mesh, std::span<const Vec3> positions) {
         largest = std::max(largest, (now_.values()[n] - before_.values()[n]).squaredNorm());
     boxes_.move(mesh, now_.values(), std::sqrt(largest));
     for (Cut& cut : cuts_) cut.has_moved = false;
-    for (LoopFront& cut : unfinished_) cut.follow_motion(positions);
 }
 
 std::optional<topology::CellPoint> Cutter::tissue_at(const Mesh& mesh,

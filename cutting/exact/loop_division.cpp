@@ -12,18 +12,14 @@ namespace incise::cutting {
 
 using topology::Dart;
 
-/// Takes this cut, which goes through a node, to the other side of an edge there.
-void LoopStep::pass_at(VertexId v, VertexId end) {
-    std::vector<VertexId> others;  // so that a corner of several faces is switched once
-    for (const FaceId f : faces_at(v)) {
-        const LoopFront::Corner corner = LoopFront::corner(mesh_, f, v);
-        if (corner.previous != end && corner.next != end) continue;
-        const VertexId other = corner.previous == end ? corner.next : corner.previous;
-        if (std::ranges::find(others, other) != others.end()) continue;
-        others.push_back(other);
-        front_.set_waiting(corner, !front_.waits(corner));
-    }
+namespace {
+
+bool is_edge_of(const topology::Mesh& mesh, FaceId f, VertexId a, VertexId b) {
+    const LoopFront::Corner corner = LoopFront::corner(mesh, f, a);
+    return corner.previous == b || corner.next == b;
 }
+
+}  // namespace
 
 /// Divides an edge for all cuts.
 VertexId LoopStep::divide_edge(VertexId a, VertexId b, double place) {
@@ -106,44 +102,6 @@ std::optional<VertexId> LoopStep::waiting_partner(const LoopFront& front, FaceId
     return is_odd ? free : std::nullopt;
 }
 
-/// Where a node waits in a face, and only an edge that the blade has passed at another node of the
-/// cut can be where the cut leaves the face again, takes the cut to the other side of that edge.
-void LoopStep::settle() {
-    for (const VertexId v : std::vector(made_))
-        for (bool is_done = false; !is_done;) {
-            is_done = true;
-            for (const FaceId f : faces_at(v)) {
-                const auto edge = edge_to_pass(f);
-                if (!edge) continue;
-                front_.toggle_passed(*edge);
-                pass_at(edge->node, edge->end);
-                join_at(front_, edge->node);
-                is_done = false;
-                break;
-            }
-        }
-}
-
-/// Returns the edge of a face to whose other side the cut is to go, so that it leaves the face
-/// where the one node that waits there has no partner; nothing if there is no such node or edge.
-std::optional<LoopFront::PassedEdge> LoopStep::edge_to_pass(FaceId f) const {
-    int num_waiting = 0;
-    std::optional<LoopFront::PassedEdge> found;
-    bool is_odd = false;
-    const int size = mesh_.face_size(f);
-    for (int p = 0; p < size; ++p) {
-        const VertexId n = mesh_.face_corner(f, p), after = mesh_.face_corner(f, (p + 1) % size);
-        if (front_.waits(mesh_, f, n)) ++num_waiting;
-        const VertexId node = front_.passed_at(n, after);
-        if (!node.is_valid()) continue;
-        is_odd = !is_odd;
-        if (!found && !front_.waits(mesh_, f, node))
-            found = LoopFront::PassedEdge{node, node == n ? after : n};
-    }
-    if (num_waiting != 1 || !is_odd) return std::nullopt;
-    return found;
-}
-
 /// Passes the faces at a node in which it waits. After divide(face) has returned true, faces have
 /// other numbers, and there may be more of them.
 template <class Divide>
@@ -197,6 +155,10 @@ void LoopStep::join_all() {
 /// Divides a face by an edge between two nodes of a cut.
 void LoopStep::join(LoopFront& front, FaceId f, VertexId v, VertexId w) {
     const FaceId other = mesh_.neighbor(f);
+    if (front.is_marked(v, w) && is_edge_of(mesh_, f, v, w)) {
+        join_along(front, f, v, w);
+        return;
+    }
     std::vector<VertexId> path = divide_face(f, v, w);
     if (path.size() > 2) front.put_on(path[1], front.local_edge_length(v));
     for (std::size_t i = 0; i + 1 < path.size(); ++i) {
@@ -216,6 +178,22 @@ void LoopStep::join(LoopFront& front, FaceId f, VertexId v, VertexId w) {
     if (!resting_.empty()) cells = star(v);
     for (const CellId e : cells)
         if (find_dart(mesh_, e, v, end).is_valid()) close(front, e, v, end);
+}
+
+/// Joins two nodes of a cut that wait in a face, along an edge of the face that is on the cut.
+void LoopStep::join_along(LoopFront& front, FaceId f, VertexId v, VertexId w) {
+    for (const VertexId n : {v, w}) front.set_waiting(LoopFront::corner(mesh_, f, n), false);
+    const FaceId other = mesh_.neighbor(f);
+    for (const CellId e : {f.cell, other.cell}) {
+        if (!e.is_valid()) continue;
+        const std::vector<Edge>& open = front.open_edges(e);
+        if (std::ranges::find(open, edge_between(v, w)) != open.end()) {
+            front.set_closed(e, v, w);
+        } else {
+            front.set_open(e, v, w);
+            close(front, e, v, w);
+        }
+    }
 }
 
 /// Returns the cuts on which a face lies.

@@ -91,9 +91,24 @@ void LoopFront::toggle_passed(const PassedEdge& edge) {
         passed_.erase(it);
 }
 
-bool LoopFront::add(const LoopFront& other) {
+bool LoopFront::add(const Mesh& mesh, const LoopFront& other) {
     for (const auto& entry : other.nodes_)
         if (is_on(entry.first)) return false;
+    // The marked edges of one cut make no difference to where the other one waits.
+    std::vector<std::pair<Corner, bool>> corners;
+    const auto keep_corners = [&](const LoopFront& cut, const LoopFront& marks) {
+        std::vector<CellId> star;
+        for (const auto& [n, ends] : marks.marked_) {
+            if (!cut.is_on(n)) continue;
+            mesh.star(n, star);
+            for (const CellId e : star)
+                for (int f = 0; f < mesh.num_faces(e); ++f)
+                    if (const Corner at = corner(mesh, {e, f}, n); at.next.is_valid())
+                        corners.emplace_back(at, cut.waits(at));
+        }
+    };
+    keep_corners(*this, other);
+    keep_corners(other, *this);
     nodes_.insert(other.nodes_.begin(), other.nodes_.end());
     for (const auto& [a, ends] : other.marked_)
         for (const VertexId b : ends) mark(a, b);
@@ -101,6 +116,7 @@ bool LoopFront::add(const LoopFront& other) {
     for (const auto& [e, edges] : other.open_)
         open_[e].insert(open_[e].end(), edges.begin(), edges.end());
     passed_.insert(passed_.end(), other.passed_.begin(), other.passed_.end());
+    for (const auto& [at, waits_there] : corners) set_waiting(at, waits_there);
     return true;
 }
 
@@ -165,7 +181,7 @@ bool LoopFront::is_on(const Mesh& mesh) const {
         return std::ranges::all_of(
             map, [&](const auto& entry) { return test(entry.first, entry.second); });
     };
-    return all_of(nodes_, [&](VertexId n, const Node&) { return is_there(n); }) &&
+    return all_of(nodes_, [&](VertexId n, double) { return is_there(n); }) &&
            all_of(marked_,
                   [&](VertexId n, const std::vector<VertexId>& others) {
                       return is_there(n) && std::ranges::all_of(others, is_there);
@@ -220,8 +236,8 @@ void LoopFront::apply(const Mesh& mesh, const ChangeSet& changes) {
         const VertexId source = record.sources[0].node;
         copies[source].push_back(record.id);
         if (const auto it = nodes_.find(source); it != nodes_.end()) {
-            const Node node = it->second;
-            nodes_.try_emplace(record.id, node);
+            const double local_edge_length = it->second;
+            nodes_.try_emplace(record.id, local_edge_length);
         }
     }
     if (!copies.empty()) {
@@ -283,36 +299,57 @@ void LoopFront::leave_behind(const Mesh& mesh) {
     for (const auto& [e, edges] : open_)
         for (const Edge& edge : edges) at_work.insert({edge.a, edge.b});
     std::vector<CellId> star;
-    const auto any_face_at = [&](VertexId n, auto test) {
+    const auto for_faces_at = [&](VertexId n, auto visit) {
         mesh.star(n, star);
-        return std::ranges::any_of(star, [&](CellId e) {
+        for (const CellId e : star)
             for (int f = 0; f < mesh.num_faces(e); ++f)
-                if (test(FaceId{e, f})) return true;
-            return false;
-        });
+                if (corner(mesh, {e, f}, n).next.is_valid()) visit(FaceId{e, f});
     };
-    for (const auto& entry : nodes_) {
-        const VertexId n = entry.first;
-        if (any_face_at(n, [&](FaceId f) {
-                const Corner at = corner(mesh, f, n);
-                return waits(at) && !is_joined(at);
-            }))
-            at_work.insert(n);
-    }
-    // Cut faces at these nodes are known to be such while they have all their marked edges.
-    std::unordered_set<VertexId> needed = at_work;
-    for (const VertexId n : at_work)
-        any_face_at(n, [&](FaceId f) {
-            const int size = mesh.face_size(f);
-            bool has_node = false;
-            for (int p = 0; p < size; ++p) has_node |= mesh.face_corner(f, p) == n;
-            if (has_node && is_cut_face(mesh, f))
-                for (int p = 0; p < size; ++p) needed.insert(mesh.face_corner(f, p));
-            return false;
+    for (const auto& entry : nodes_)
+        for_faces_at(entry.first, [&](FaceId f) {
+            const Corner at = corner(mesh, f, entry.first);
+            if (waits(at) && !is_joined(at)) at_work.insert(at.node);
         });
+    std::unordered_set<VertexId> needed;
+    const auto need = [&](VertexId n) { return is_on(n) && needed.insert(n).second; };
+    const auto need_all = [&](FaceId f) {
+        bool is_any = false;
+        for (int p = 0; p < mesh.face_size(f); ++p) is_any |= need(mesh.face_corner(f, p));
+        return is_any;
+    };
+    for (const VertexId n : at_work) need(n);
+    // Cut faces at these nodes are known to be such while they have all their marked edges.
+    for (const VertexId n : at_work)
+        for_faces_at(n, [&](FaceId f) {
+            if (is_cut_face(mesh, f)) need_all(f);
+        });
+    // The cut comes into each face as often as it goes out, also without those that are forgotten.
+    const auto is_left = [&](VertexId n) { return is_on(n) && !needed.contains(n); };
+    const auto loses_odd_number = [&](FaceId f) {
+        const int size = mesh.face_size(f);
+        bool is_odd = false;
+        for (int p = 0; p < size; ++p) {
+            const VertexId n = mesh.face_corner(f, p), next = mesh.face_corner(f, (p + 1) % size);
+            if (is_left(n)) is_odd ^= waits(mesh, f, n);
+            if (is_left(n) || is_left(next)) is_odd ^= passed_at(n, next).is_valid();
+        }
+        return is_odd;
+    };
+    std::vector<VertexId> to_check;
+    if (!passed_.empty() || !switched_.empty())
+        for (const auto& entry : nodes_)
+            if (!needed.contains(entry.first)) to_check.push_back(entry.first);
+    for (bool is_done = false; !is_done;) {
+        is_done = true;
+        for (const VertexId n : to_check)
+            for_faces_at(n, [&](FaceId f) {
+                if (is_left(n) && !is_cut_face(mesh, f) && loses_odd_number(f) && need_all(f))
+                    is_done = false;
+            });
+    }
     std::vector<VertexId> finished;
-    for (const auto& [n, node] : nodes_)
-        if (!needed.contains(n)) finished.push_back(n);
+    for (const auto& entry : nodes_)
+        if (!needed.contains(entry.first)) finished.push_back(entry.first);
     for (const VertexId n : finished) nodes_.erase(n);
     for (const VertexId n : finished) forget(n);
     // Other cuts divide marked edges by nodes that are not on this one.

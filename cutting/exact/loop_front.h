@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -32,20 +31,12 @@ namespace incise::cutting {
 /// goes into the cell as often as out of it.
 class LoopFront {
   public:
-    struct Node {
-        double local_edge_length = 0.0;  ///< of the edge on which it was made, at rest, m
-        /// Where it was when the blade was taken out, m; not a number until follow_motion().
-        Vec3 place = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-        static void archive(auto& ar, auto& self) { ar(self.local_edge_length, self.place); }
-    };
-
-    void put_on(VertexId n, double local_edge_length) {
-        nodes_.try_emplace(n, Node{local_edge_length, Node().place});
-    }
+    /// @param local_edge_length  of the edge on which the node was made, at rest, m
+    void put_on(VertexId n, double local_edge_length) { nodes_.try_emplace(n, local_edge_length); }
     bool is_on(VertexId n) const { return nodes_.contains(n); }
     double local_edge_length(VertexId n) const {
         const auto it = nodes_.find(n);
-        return it != nodes_.end() ? it->second.local_edge_length : 0.0;
+        return it != nodes_.end() ? it->second : 0.0;
     }
     /// Passes each node that is on the cut, in no particular order.
     template <class Visit>
@@ -81,6 +72,7 @@ class LoopFront {
     /// Returns the node at which the blade has passed an edge; an invalid id if at none.
     VertexId passed_at(VertexId a, VertexId b) const;
     void toggle_passed(const PassedEdge& edge);
+    bool has_passed_edges() const { return !passed_.empty(); }
 
     /// A node of a face, between its neighbours round the face.
     struct Corner {
@@ -118,14 +110,8 @@ class LoopFront {
     /// Follows the blade out of the body, the way it came: passes edges at nodes of the cut, so
     /// that the cut comes into each face as often as it goes out. Another blade may then come.
     void draw_back(const topology::Mesh& mesh);
-    /// Follows a motion of the body after draw_back(). Cost: proportional to the nodes of the cut.
-    /// @param positions  by vertex id, m
-    void follow_motion(std::span<const Vec3> positions);
-    /// True if the blade was in the body at draw_back(), and nodes have moved since: one by more
-    /// than a thousandth of the edge on which it was made.
-    bool has_moved() const { return has_moved_; }
     /// Adds another cut, with no common nodes. Returns false, and changes nothing, if there are.
-    bool add(const LoopFront& other);
+    bool add(const topology::Mesh& mesh, const LoopFront& other);
 
     /// True if the mesh has all nodes and cells that it names.
     bool is_on(const topology::Mesh& mesh) const;
@@ -141,24 +127,23 @@ class LoopFront {
     /// Forgets the cut at some nodes.
     void forget(std::span<const VertexId> nodes);
     /// Forgets the nodes round which nothing waits and each path is closed, if they are not at a
-    /// cut face of another node.
+    /// cut face of another node. It keeps those without which the cut would not come into each face
+    /// as often as it goes out.
     void leave_behind(const topology::Mesh& mesh);
 
     static void archive(auto& ar, auto& self) {
-        ar(self.nodes_, self.marked_, self.switched_, self.open_, self.passed_, self.is_drawn_back_,
-           self.has_moved_);
+        ar(self.nodes_, self.marked_, self.switched_, self.open_, self.passed_);
     }
 
   private:
     bool is_switched(const Corner& corner) const;
     void forget(VertexId n);
 
-    std::unordered_map<VertexId, Node> nodes_;
+    std::unordered_map<VertexId, double> nodes_;                  // their local edge lengths, m
     std::unordered_map<VertexId, std::vector<VertexId>> marked_;  // each edge in both directions
     std::unordered_map<VertexId, std::vector<Edge>> switched_;    // the neighbours at the corners
     std::unordered_map<CellId, std::vector<Edge>> open_;
     std::vector<PassedEdge> passed_;
-    bool is_drawn_back_ = false, has_moved_ = false;
 };
 
 }  // namespace incise::cutting

@@ -40,6 +40,7 @@ Split LoopStep::run() {
     if (is_swept_) {
         settle();
         if (only_) close_all();
+        close_parted();
     } else {
         join_all();
     }
@@ -102,49 +103,6 @@ void LoopStep::find_crossed_edges() {
         std::ranges::count_if(crossed_, [&](CellId e) { return !stays_whole(e); }));
 }
 
-/// Goes on with those earlier cuts to nodes of which the blade comes. Others are as if suspended
-/// where this one comes to their cells.
-void LoopStep::meet_earlier_cuts() {
-    for (SuspendedLoops& cut : earlier_.unfinished) {
-        const bool is_at_cut = std::ranges::any_of(crossed_, [&](CellId e) {
-            return std::ranges::any_of(mesh_.corners(e),
-                                       [&](VertexId n) { return cut.front.is_on(n); });
-        });
-        if (!is_at_cut) continue;
-        if (is_swept_ && !only_ && goes_along(cut.front) && front_.add(cut.front))
-            cut.front = {};
-        else
-            resting_.push_back(cut);
-    }
-}
-
-/// True if the surface goes along another cut at a node of that. In tissue that has moved since the
-/// blade of that was taken out, a blade could take some of the cut for its own and not the rest,
-/// and leave cells between the two whole: then it makes a cut of its own.
-bool LoopStep::goes_along(const LoopFront& cut) const {
-    if (cut.has_moved()) return false;
-    const auto is_along = [&](VertexId n, const Vec3& normal) {
-        constexpr double largest_sine = 0.1;
-        return std::ranges::all_of(cut.marked_at(n), [&](VertexId other) {
-            const Vec3 d = point(other)[1] - point(n)[1];
-            const double noise = nearness * cut.local_edge_length(n);  // of the places of nodes
-            return std::abs(normal.dot(d)) <= std::max(largest_sine * d.norm(), noise);
-        });
-    };
-    return std::ranges::any_of(pending_, [&](const auto& entry) {
-        const auto& [edge, intersections] = entry;
-        const bool is_marked = cut.is_marked(edge.a, edge.b);
-        const double length = rest_length(edge.a, edge.b);
-        return std::ranges::any_of(intersections, [&](const EdgeIntersection& x) {
-            const auto is_met = [&](VertexId n, double share) {
-                return cut.is_on(n) && is_along(n, x.normal) &&
-                       (is_marked || share * length < nearness * cut.local_edge_length(n));
-            };
-            return is_met(edge.a, x.place) || is_met(edge.b, 1.0 - x.place);
-        });
-    });
-}
-
 void LoopStep::receive(const Edge& edge, EdgeIntersections intersections) {
     if (intersections.empty()) return;
     std::ranges::stable_sort(intersections, {}, &EdgeIntersection::time);
@@ -173,24 +131,6 @@ void LoopStep::divide_warped_faces() {
                 receive({corner, centre}, new_intersections({corner, centre}));
         }
     }
-}
-
-/// Returns the end of an edge, a node of this cut, at which the cut passes to the other side of the
-/// edge, if it is not to get a node there: the blade has come back to the node, or has not left it
-/// yet; or the edge lies on the cut, and the nodes at its ends not exactly where the blade is.
-std::optional<VertexId> LoopStep::own_node_at(const Edge& edge,
-                                              const EdgeIntersection& intersection) const {
-    if (const VertexId node = front_.passed_at(edge.a, edge.b); node.is_valid()) return node;
-    const double length = rest_length(edge.a, edge.b);
-    std::array<std::pair<VertexId, double>, 2> ends{std::pair(edge.a, intersection.place),
-                                                    std::pair(edge.b, 1.0 - intersection.place)};
-    if (ends[1].second < ends[0].second) std::swap(ends[0], ends[1]);
-    const bool is_marked = front_.is_marked(edge.a, edge.b);
-    for (const auto& [end, share] : ends)
-        if (front_.is_on(end) &&
-            (is_marked || share * length < nearness * front_.local_edge_length(end)))
-            return end;
-    return std::nullopt;
 }
 
 void LoopStep::divide_next() {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cassert>
 #include <optional>
 #include <queue>
@@ -40,9 +41,11 @@ class LoopStep {
     Split run();
 
   private:
-    /// Share of an edge: a blade that passes nearer to a node of its own cut passes at the node.
-    /// Two intersections with an edge at once that are nearer to each other cancel out.
+    /// Share of an edge: a surface at once that passes nearer to a node of its own cut passes at
+    /// the node. Two intersections with an edge at once that are nearer to each other cancel out.
     static constexpr double nearness = default_snap;
+    /// Share of an edge: the same for a blade, which does not come back to the same place exactly.
+    static constexpr double nearness_of_blade = 0.1;
     /// Share of an edge: a node is not made nearer to an end, so that no edge is without length.
     static constexpr double least_place = 2e-3;
 
@@ -92,17 +95,12 @@ class LoopStep {
     // What the surface crosses: loop_splitter.cpp.
     EdgeIntersections new_intersections(const Edge& edge) const;
     void find_crossed_edges();
-    void meet_earlier_cuts();
-    bool goes_along(const LoopFront& cut) const;
     void receive(const Edge& edge, EdgeIntersections intersections);
     void divide_pending(const Edge& edge, VertexId middle, double place);
     void divide_warped_faces();
     void divide_next();
-    std::optional<VertexId> own_node_at(const Edge& edge,
-                                        const EdgeIntersection& intersection) const;
 
     // How edges, faces and cells are divided and opened: loop_division.cpp.
-    void pass_at(VertexId v, VertexId end);
     VertexId divide_edge(VertexId a, VertexId b, double place);
     void note_rings(VertexId middle, VertexId a, std::span<const CellId> cells);
     std::vector<CellId> star(VertexId v) const;
@@ -112,9 +110,8 @@ class LoopStep {
     void for_faces_where_waits(const LoopFront& front, VertexId v, Divide divide);
     void join_at(LoopFront& front, VertexId v);
     void join_all();
-    void settle();
-    std::optional<LoopFront::PassedEdge> edge_to_pass(FaceId f) const;
     void join(LoopFront& front, FaceId f, VertexId v, VertexId w);
+    void join_along(LoopFront& front, FaceId f, VertexId v, VertexId w);
     std::vector<LoopFront*> cuts_with(FaceId f);
     std::vector<VertexId> divide_face(FaceId f, VertexId v, VertexId w);
     std::vector<VertexId> path_from(const LoopFront& front, CellId e, VertexId v, VertexId w) const;
@@ -126,6 +123,20 @@ class LoopStep {
     void divide_at_centre(FaceId f);
     void triangulate_all();
     void open_faces();
+
+    // Where the blade comes to a cut again: loop_returns.cpp.
+    void meet_earlier_cuts();
+    bool goes_along(const LoopFront& cut) const;
+    bool is_along(const LoopFront& cut, VertexId n, const Vec3& normal) const;
+    std::array<VertexId, 2> nodes_near(const LoopFront& cut, const Edge& edge,
+                                       const EdgeIntersection& x) const;
+    std::optional<VertexId> own_node_at(const Edge& edge, const EdgeIntersection& x) const;
+    void pass_at(VertexId v, VertexId end);
+    void settle();
+    std::optional<LoopFront::PassedEdge> edge_to_pass(FaceId f) const;
+    bool parts_nodes(CellId e) const;
+    void close_parted();
+    bool lengthen_path(CellId e);
 
     // What other cuts make of it: loop_passing.cpp.
     void make_wait_in(LoopFront& front, FaceId f, std::span<const VertexId> path);
