@@ -171,29 +171,37 @@ void LoopStep::join(LoopFront& front, FaceId f, VertexId v, VertexId w) {
         for (const VertexId n : {v, w}) front.set_waiting(LoopFront::corner(mesh_, part, n), false);
     cross_again(front, f.cell, path);
     let_all_pass(&front, f.cell, path);
-    const VertexId end = path[1];
-    // Other cuts can have divided the cells meanwhile.
-    std::vector<CellId> cells = {f.cell};
-    if (other.is_valid()) cells.push_back(other.cell);
-    if (!resting_.empty()) cells = star(v);
-    for (const CellId e : cells)
-        if (find_dart(mesh_, e, v, end).is_valid()) close(front, e, v, end);
+    close_at(front, std::array{f.cell, other.cell}, v, path[1]);
 }
 
 /// Joins two nodes of a cut that wait in a face, along an edge of the face that is on the cut.
 void LoopStep::join_along(LoopFront& front, FaceId f, VertexId v, VertexId w) {
     for (const VertexId n : {v, w}) front.set_waiting(LoopFront::corner(mesh_, f, n), false);
-    const FaceId other = mesh_.neighbor(f);
-    for (const CellId e : {f.cell, other.cell}) {
+    const CellId cells[] = {f.cell, mesh_.neighbor(f).cell};
+    for (const CellId e : cells) {
         if (!e.is_valid()) continue;
         const std::vector<Edge>& open = front.open_edges(e);
-        if (std::ranges::find(open, edge_between(v, w)) != open.end()) {
+        if (std::ranges::find(open, edge_between(v, w)) != open.end())
             front.set_closed(e, v, w);
-        } else {
+        else
             front.set_open(e, v, w);
-            close(front, e, v, w);
-        }
     }
+    close_at(front, cells, v, w);
+    // Without the edge, another path at its ends can be closed.
+    for (const CellId e : cells)
+        for (const Edge& edge : std::vector(front.open_edges(e)))
+            if (edge.a == v || edge.b == v || edge.a == w || edge.b == w)
+                close_at(front, std::array{e}, edge.a, edge.b);
+}
+
+/// Divides those of the cells at an edge where it completes a closed path.
+/// @param cells  at a face with the edge; some may be invalid
+void LoopStep::close_at(LoopFront& front, std::span<const CellId> cells, VertexId v, VertexId w) {
+    // Other cuts can have divided the cells meanwhile.
+    const std::vector<CellId> all =
+        resting_.empty() ? std::vector(cells.begin(), cells.end()) : star(v);
+    for (const CellId e : all)
+        if (e.is_valid() && find_dart(mesh_, e, v, w).is_valid()) close(front, e, v, w);
 }
 
 /// Returns the cuts on which a face lies.
@@ -392,7 +400,6 @@ void LoopStep::divide_at_centre(FaceId f) {
 /// Divides the faces on cuts into triangles. They are plane then, and later cuts do not change the
 /// volumes on their two sides.
 void LoopStep::triangulate_all() {
-    time_ = 1.0;
     std::ranges::sort(divided_);
     divided_.erase(std::unique(divided_.begin(), divided_.end()), divided_.end());
     const auto is_done = [&](FaceId f) {

@@ -58,9 +58,11 @@ void LoopFront::divide(VertexId a, VertexId b, VertexId middle, double local_edg
                 if (neighbours.a == other || neighbours.b == other)
                     neighbours =
                         edge_between(neighbours.a == other ? neighbours.b : neighbours.a, middle);
-    for (PassedEdge& edge : passed_)
-        if ((edge.node == a && edge.end == b) || (edge.node == b && edge.end == a))
-            edge.end = middle;
+    if (const auto it = passed_.find(edge_between(a, b)); it != passed_.end()) {
+        const VertexId node = it->second;
+        passed_.erase(it);
+        toggle_passed({node, middle});
+    }
     if (!is_marked(a, b)) return;
     std::erase(marked_[a], b);
     std::erase(marked_[b], a);
@@ -77,18 +79,13 @@ void LoopFront::divide(VertexId a, VertexId b, VertexId middle, double local_edg
 }
 
 VertexId LoopFront::passed_at(VertexId a, VertexId b) const {
-    for (const PassedEdge& edge : passed_)
-        if ((edge.node == a && edge.end == b) || (edge.node == b && edge.end == a))
-            return edge.node;
-    return {};
+    const auto it = passed_.find(edge_between(a, b));
+    return it != passed_.end() ? it->second : VertexId();
 }
 
 void LoopFront::toggle_passed(const PassedEdge& edge) {
-    const auto it = std::ranges::find(passed_, edge);
-    if (it == passed_.end())
-        passed_.push_back(edge);
-    else
-        passed_.erase(it);
+    const auto [it, is_new] = passed_.emplace(edge_between(edge.node, edge.end), edge.node);
+    if (!is_new) passed_.erase(it);
 }
 
 bool LoopFront::add(const Mesh& mesh, const LoopFront& other) {
@@ -115,7 +112,7 @@ bool LoopFront::add(const Mesh& mesh, const LoopFront& other) {
     switched_.insert(other.switched_.begin(), other.switched_.end());
     for (const auto& [e, edges] : other.open_)
         open_[e].insert(open_[e].end(), edges.begin(), edges.end());
-    passed_.insert(passed_.end(), other.passed_.begin(), other.passed_.end());
+    passed_.insert(other.passed_.begin(), other.passed_.end());
     for (const auto& [at, waits_there] : corners) set_waiting(at, waits_there);
     return true;
 }
@@ -197,8 +194,8 @@ bool LoopFront::is_on(const Mesh& mesh) const {
                                  return find_dart(mesh, e, edge.a, edge.b).is_valid();
                              });
                   }) &&
-           std::ranges::all_of(passed_, [&](const PassedEdge& edge) {
-               return is_there(edge.node) && is_there(edge.end);
+           all_of(passed_, [&](const Edge& edge, VertexId node) {
+               return is_there(edge.a) && is_there(edge.b) && (node == edge.a || node == edge.b);
            });
 }
 
@@ -215,7 +212,8 @@ void LoopFront::forget(VertexId n) {
         if (marked_[n].empty()) marked_.erase(n);
     }
     switched_.erase(n);
-    std::erase_if(passed_, [&](const PassedEdge& edge) { return edge.node == n || edge.end == n; });
+    std::erase_if(passed_,
+                  [&](const auto& entry) { return entry.first.a == n || entry.first.b == n; });
 }
 
 void LoopFront::forget(std::span<const VertexId> nodes) {
@@ -279,8 +277,9 @@ void LoopFront::apply(const Mesh& mesh, const ChangeSet& changes) {
                         for (const VertexId b : all_of(neighbours.b))
                             switched_[x].push_back(edge_between(a, b));
         const auto passed = std::exchange(passed_, {});
-        for (const PassedEdge& edge : passed)
-            follow(edge.node, edge.end, [&](VertexId x, VertexId y) { toggle_passed({x, y}); });
+        for (const auto& [edge, node] : passed)
+            follow(node, node == edge.a ? edge.b : edge.a,
+                   [&](VertexId x, VertexId y) { passed_[edge_between(x, y)] = x; });
         for (auto& [e, edges] : open_) {
             std::vector<Edge> now;
             for (const Edge& edge : edges)
@@ -311,11 +310,11 @@ void LoopFront::leave_behind(const Mesh& mesh) {
             if (waits(at) && !is_joined(at)) at_work.insert(at.node);
         });
     std::unordered_set<VertexId> needed;
-    const auto need = [&](VertexId n) { return is_on(n) && needed.insert(n).second; };
+    const auto need = [&](VertexId n) {
+        if (is_on(n)) needed.insert(n);
+    };
     const auto need_all = [&](FaceId f) {
-        bool is_any = false;
-        for (int p = 0; p < mesh.face_size(f); ++p) is_any |= need(mesh.face_corner(f, p));
-        return is_any;
+        for (int p = 0; p < mesh.face_size(f); ++p) need(mesh.face_corner(f, p));
     };
     for (const VertexId n : at_work) need(n);
     // Cut faces at these nodes are known to be such while they have all their marked edges.
@@ -335,18 +334,17 @@ void LoopFront::leave_behind(const Mesh& mesh) {
         }
         return is_odd;
     };
-    std::vector<VertexId> to_check;
     if (!passed_.empty() || !switched_.empty())
-        for (const auto& entry : nodes_)
-            if (!needed.contains(entry.first)) to_check.push_back(entry.first);
-    for (bool is_done = false; !is_done;) {
-        is_done = true;
-        for (const VertexId n : to_check)
-            for_faces_at(n, [&](FaceId f) {
-                if (is_left(n) && !is_cut_face(mesh, f) && loses_odd_number(f) && need_all(f))
-                    is_done = false;
-            });
-    }
+        for (bool is_done = false; !is_done;) {
+            std::vector<FaceId> odd;  // all that are, so that the order of the nodes is nothing
+            for (const auto& entry : nodes_)
+                if (is_left(entry.first))
+                    for_faces_at(entry.first, [&](FaceId f) {
+                        if (!is_cut_face(mesh, f) && loses_odd_number(f)) odd.push_back(f);
+                    });
+            is_done = odd.empty();
+            for (const FaceId f : odd) need_all(f);
+        }
     std::vector<VertexId> finished;
     for (const auto& entry : nodes_)
         if (!needed.contains(entry.first)) finished.push_back(entry.first);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -66,8 +67,6 @@ class LoopFront {
     /// a blade that goes back and comes again leaves all as it was.
     struct PassedEdge {
         VertexId node, end;
-        bool operator==(const PassedEdge&) const = default;
-        static void archive(auto& ar, auto& self) { ar(self.node, self.end); }
     };
     /// Returns the node at which the blade has passed an edge; an invalid id if at none.
     VertexId passed_at(VertexId a, VertexId b) const;
@@ -143,7 +142,7 @@ class LoopFront {
     std::unordered_map<VertexId, std::vector<VertexId>> marked_;  // each edge in both directions
     std::unordered_map<VertexId, std::vector<Edge>> switched_;    // the neighbours at the corners
     std::unordered_map<CellId, std::vector<Edge>> open_;
-    std::vector<PassedEdge> passed_;
+    std::map<Edge, VertexId> passed_;  // the node at which each is passed
 };
 
 }  // namespace incise::cutting

@@ -13,8 +13,8 @@ namespace incise::cutting {
 
 using topology::Dart;
 
-/// Goes on with those earlier cuts to nodes of which the blade comes. Others are as if suspended
-/// where this one comes to their cells.
+/// Goes on with those earlier cuts to nodes of which the blade comes, and along which it goes.
+/// Others are as if suspended where this one comes to their cells.
 void LoopStep::meet_earlier_cuts() {
     for (SuspendedLoops& cut : earlier_.unfinished) {
         const bool is_at_cut = std::ranges::any_of(crossed_, [&](CellId e) {
@@ -63,7 +63,8 @@ std::array<VertexId, 2> LoopStep::nodes_near(const LoopFront& cut, const Edge& e
 /// True if a surface with a normal goes along a cut at a node of it.
 bool LoopStep::is_along(const LoopFront& cut, VertexId n, const Vec3& normal) const {
     constexpr double largest_sine = 0.1;
-    return std::ranges::all_of(cut.marked_at(n), [&](VertexId other) {
+    const std::vector<VertexId>& others = cut.marked_at(n);
+    return !others.empty() && std::ranges::all_of(others, [&](VertexId other) {
         const Vec3 d = point(other)[1] - point(n)[1];
         const double noise = nearness * cut.local_edge_length(n);  // of the places of nodes
         return std::abs(normal.dot(d)) <= std::max(largest_sine * d.norm(), noise);
@@ -160,14 +161,14 @@ bool LoopStep::parts_nodes(CellId e) const {
         // The blade is beside such a face as often as behind it: there it says nothing.
         const bool is_on_cut = is_on_a_cut({e, f});
         for (int p = 0; p < mesh_.face_size({e, f}); ++p) {
-            const Dart d{{e, f}, p}, across = opposite(mesh_, d);
+            const Dart d{{e, f}, p}, twin = opposite(mesh_, d);
             const VertexId n = from(mesh_, d), after = to(mesh_, d);
             const bool is_open = std::ranges::find(open, edge_between(n, after)) != open.end();
             if (!sides.relate(end_of(d, false), end_of(d, true),
                               front_.passed_at(n, after).is_valid()) ||
                 (!is_on_cut && !sides.relate(end_of(d, true), end_of(next(mesh_, d), false),
                                              front_.waits(mesh_, d.face, after))) ||
-                !sides.relate(end_of(d, false), end_of(across, true), is_open))
+                !sides.relate(end_of(d, false), end_of(twin, true), is_open))
                 return false;
             if (front_.is_on(n) || std::ranges::find(on_cuts, n) != on_cuts.end()) continue;
             if (first)
@@ -184,12 +185,19 @@ bool LoopStep::parts_nodes(CellId e) const {
 /// path goes on along a face that the cut has made before.
 void LoopStep::close_parted() {
     if (!front_.has_passed_edges()) return;
-    for (const CellId e : front_.open_cells())
-        while (passes_left_ > 0 && parts_nodes(e) && lengthen_path(e)) --passes_left_;
+    for (bool is_done = false; !is_done;) {  // it adds cells, and opens edges in others
+        is_done = true;
+        for (const CellId e : front_.open_cells())
+            while (passes_left_ > 0 && parts_nodes(e) && lengthen_path(e)) {
+                --passes_left_;
+                is_done = false;
+            }
+    }
 }
 
 /// Lengthens a path of open edges of a cell by one edge, in a face in which the cut waits at an end
-/// of it. Returns false if there is no such face.
+/// of it. If it waits nowhere else in the face, takes it to the other side of an edge that the
+/// blade has passed. Returns false if there is no such face.
 bool LoopStep::lengthen_path(CellId e) {
     std::vector<VertexId> ends;  // of paths: nodes at an odd number of open edges
     for (const Edge& edge : front_.open_edges(e))
@@ -230,6 +238,7 @@ bool LoopStep::lengthen_path(CellId e) {
                 const LoopFront::PassedEdge edge{node, node == a ? b : a};
                 front_.toggle_passed(edge);
                 pass_at(edge.node, edge.end);
+                join_at(front_, edge.node);
                 return true;
             }
         }

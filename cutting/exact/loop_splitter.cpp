@@ -37,6 +37,7 @@ Split LoopStep::run() {
     divide_warped_faces();
     passes_left_ = most_passes(crossed_.size());
     while (!queue_.empty()) divide_next();
+    time_ = 1.0;  // nothing is crossed later
     if (is_swept_) {
         settle();
         if (only_) close_all();

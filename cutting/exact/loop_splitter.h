@@ -23,7 +23,7 @@ using SuspendedLoops = SuspendedCutOf<LoopFront>;
 struct EarlierCuts {
     const std::unordered_set<VertexId>* on_surface = nullptr;  ///< nodes that the surface has made
     /// Cuts that have ended inside the body, with blades far away. A blade that comes to a node of
-    /// such a cut goes on with it.
+    /// such a cut, and goes along it, goes on with it.
     std::span<SuspendedLoops> unfinished;
 };
 

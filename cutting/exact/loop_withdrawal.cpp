@@ -63,7 +63,7 @@ void LoopFront::draw_back(const Mesh& mesh) {
     for (const auto& [edge, i] : numbers) {
         if (!sides.is_other(i)) continue;
         const auto [n, end] = edge;
-        toggle_passed(passed_at(n, end) == end ? PassedEdge{end, n} : PassedEdge{n, end});
+        toggle_passed({n, end});
     }
 }
 

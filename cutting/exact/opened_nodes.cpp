@@ -214,7 +214,9 @@ void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
     std::unordered_set<CellId> seen;
     std::vector<VertexId> more;
     for (const VertexId n : chosen)
-        for (const CellId e : near_to(mesh, n, 2.0 * default_snap * usual_).cells)
+        for (const CellId e :
+             near_to(mesh, n, 2.0 * std::max(margin_of(mesh, n, usual_), default_snap * usual_))
+                 .cells)
             if (seen.insert(e).second)
                 std::ranges::copy_if(mesh.corners(e), std::back_inserter(more),
                                      [&](VertexId other) { return nodes_.contains(other); });
