@@ -112,7 +112,8 @@ bool LoopFront::add(const Mesh& mesh, const LoopFront& other) {
     switched_.insert(other.switched_.begin(), other.switched_.end());
     for (const auto& [e, edges] : other.open_)
         open_[e].insert(open_[e].end(), edges.begin(), edges.end());
-    passed_.insert(other.passed_.begin(), other.passed_.end());
+    for (const auto& [edge, node] : other.passed_)  // one that both have passed is not passed
+        toggle_passed({node, node == edge.a ? edge.b : edge.a});
     for (const auto& [at, waits_there] : corners) set_waiting(at, waits_there);
     return true;
 }
