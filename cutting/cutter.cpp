@@ -286,7 +286,7 @@ Split Cutter::split(Mesh& mesh, const CutSurface& surface, double snap) {
             done = split_cells(mesh, motion(mesh), surface, front, resting,
                                {&seen.on_surface, unfinished});
         }
-        known_.note(surface, front, done.changes, now_, opened_.usual());
+        known_.note(mesh, surface, front, done.changes, now_, opened_.usual());
         return noted(std::move(done), std::nullopt);
     }
     CutFront front;
@@ -341,13 +341,13 @@ std::vector<FaceId> Cutter::contradictory_faces(CutId id, const Mesh& mesh) cons
         for (int k = 0; k < mesh.num_faces(e); ++k) {
             const FaceId face{e, k};
             const int size = mesh.face_size(face);
-            if (has_loops_ ? cut.loops.is_cut_face(mesh, face) : size != 3) continue;
+            if (has_loops_ ? cut.loops.is_cut_face(face) : size != 3) continue;
             bool is_odd = false, is_pierced = false;
             for (int p = 0; p < size; ++p) {
                 const VertexId n = mesh.face_corner(face, p),
                                next = mesh.face_corner(face, (p + 1) % size);
                 is_odd ^= cut.front.is_crossed(n, next) || cut.loops.passed_at(n, next).is_valid();
-                is_odd ^= cut.loops.waits(mesh, face, n);
+                is_odd ^= cut.loops.waits(face, n);
                 if (p > 1)
                     is_pierced ^= edge.ends_inside({at(mesh.face_corner(face, 0)),
                                                     at(mesh.face_corner(face, p - 1)), at(n)})

@@ -228,6 +228,8 @@ void Checkpoint::restore(Simulation& simulation) const {
     name_location([&] {
         ArchiveReader ar(state_);
         simulation.restore(ar);
+        if (simulation.world().has_failed())
+            throw InputError("it is of a world that has failed, which cannot go on");
         const auto& frames = written_.frames;
         const auto is_late = [](const auto& a, const auto& b) { return !(a.time < b.time); };
         const bool ascends =

@@ -15,9 +15,9 @@ namespace {
 constexpr double same_place = 1e-6;
 /// How far nodes may have moved across a surface that comes again, as a share of the size of cells.
 /// What has moved farther may be another part of the tissue.
-constexpr double near = 0.3;
+constexpr double near_known = 0.3;
 /// Nodes nearer than this share to the surface, beside nodes on it, may be on its wrong side, too.
-constexpr double beside = 0.05;
+constexpr double beside_known = 0.05;
 
 /// Returns the intersection of a surface with the tissue at rest between two points, if their
 /// number is odd.
@@ -58,14 +58,14 @@ class SideSearch {
 
     /// @param nodes  that were on the surface, in ascending order
     KnownSurfaces::Seen find(std::vector<VertexId> nodes) {
-        std::erase_if(nodes, [&](VertexId n) { return !is_within(n, near); });
+        std::erase_if(nodes, [&](VertexId n) { return !is_within(n, near_known); });
         on_surface_.insert(nodes.begin(), nodes.end());
         for (std::size_t i = 0; i < nodes.size(); ++i)  // more are added
             for (const VertexId n : neighbors(mesh_, nodes[i]))
-                if (is_within(n, beside) && on_surface_.insert(n).second) nodes.push_back(n);
+                if (is_within(n, beside_known) && on_surface_.insert(n).second) nodes.push_back(n);
         for (const VertexId n : nodes)
             for (const VertexId other : neighbors(mesh_, n))
-                if (!on_surface_.contains(other) && !is_within(other, near)) {
+                if (!on_surface_.contains(other) && !is_within(other, near_known)) {
                     put_beside(n, x_[other]);
                     break;
                 }
@@ -156,26 +156,33 @@ std::optional<KnownSurfaces::Number> KnownSurfaces::find(const CutSurface& surfa
     return std::nullopt;
 }
 
-void KnownSurfaces::note(const CutSurface& surface, const LoopFront& front,
+void KnownSurfaces::note(const Mesh& mesh, const CutSurface& surface, const LoopFront& front,
                          const topology::ChangeSet& changes,
                          const topology::NodeField<VertexId, Vec3>& x, double size) {
     if (surface.identity() == no_identity || front.is_empty()) return;
     auto number = find(surface, size);
-    for (const topology::VertexRecord& record : changes.nodes_added) {
-        if (number) break;
-        const std::span sources(record.sources.data(),
-                                static_cast<std::size_t>(record.num_sources));
-        const auto is_new = [&](const auto& source) {
-            return source.node.index() >= changes.node_capacity_before;
-        };
-        if (sources.size() != 2 || !front.is_on(record.id) || std::ranges::any_of(sources, is_new))
-            continue;
-        const Vec3 &a = x[sources[0].node], &b = x[sources[1].node];
-        const auto crossing = crossing_between(surface, a, b);
-        if (!crossing) continue;
+    // A place of the surface is where it crosses an edge that was there before.
+    const auto know_from = [&](VertexId a, VertexId b) {
+        const bool are_old = std::max(a, b).index() < changes.node_capacity_before;
+        const auto crossing =
+            are_old ? crossing_between(surface, x[a], x[b]) : std::optional<Crossing>();
+        if (number || !crossing) return;
         number = static_cast<Number>(known_.size());
-        known_.push_back(
-            {surface.identity(), a + crossing->place * (b - a), crossing->normal.normalized()});
+        known_.push_back({surface.identity(), x[a] + crossing->place * (x[b] - x[a]),
+                          crossing->normal.normalized()});
+    };
+    for (const topology::VertexRecord& record : changes.nodes_added)
+        if (record.num_sources == 2 && front.is_on(record.id))
+            know_from(record.sources[0].node, record.sources[1].node);
+    if (!number) {  // it has divided no edge, but goes through nodes
+        std::vector<std::pair<VertexId, VertexId>> nodes;  // with those of which they are copies
+        front.for_each([&](VertexId n) { nodes.emplace_back(n, n); });
+        for (const topology::VertexRecord& record : changes.nodes_added)
+            if (record.num_sources == 1) nodes.emplace_back(record.id, record.sources[0].node);
+        std::ranges::sort(nodes);
+        for (const auto& [n, source] : nodes)
+            if (front.is_on(source))
+                for (const VertexId other : neighbors(mesh, n)) know_from(source, other);
     }
     if (!number) return;
     front.for_each([&](VertexId n) {

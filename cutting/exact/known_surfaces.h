@@ -33,12 +33,14 @@ class KnownSurfaces {
     std::optional<Number> find(const CutSurface& surface, double size) const;
 
     /// Notes the nodes of a cut that a surface has made.
+    /// @param mesh     after the edit of the cut
     /// @param front    the nodes of the cut
     /// @param changes  the edit of the cut
     /// @param x        where nodes were before the edit, m
     /// @param size     of cells, m
-    void note(const CutSurface& surface, const LoopFront& front, const topology::ChangeSet& changes,
-              const topology::NodeField<VertexId, Vec3>& x, double size);
+    void note(const topology::Mesh& mesh, const CutSurface& surface, const LoopFront& front,
+              const topology::ChangeSet& changes, const topology::NodeField<VertexId, Vec3>& x,
+              double size);
 
     /// How a surface that comes again sees nodes.
     struct Seen {

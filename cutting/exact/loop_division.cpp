@@ -12,15 +12,6 @@ namespace incise::cutting {
 
 using topology::Dart;
 
-namespace {
-
-bool is_edge_of(const topology::Mesh& mesh, FaceId f, VertexId a, VertexId b) {
-    const LoopFront::Corner corner = LoopFront::corner(mesh, f, a);
-    return corner.previous == b || corner.next == b;
-}
-
-}  // namespace
-
 /// Divides an edge for all cuts.
 VertexId LoopStep::divide_edge(VertexId a, VertexId b, double place) {
     std::vector<CellId> cells = star(a);
@@ -83,23 +74,28 @@ std::vector<FaceId> LoopStep::faces_at(VertexId v) const {
     return faces;
 }
 
-/// Returns another node that waits in the face, to be joined with the node: one that has no edge of
-/// the cut there. Of nodes that have such an edge two belong together, which the blade passed when
-/// it went back. They are not joined, as the edge would lie beside the cut, but for the odd one.
+/// Puts a node on a cut which it has made on an edge: the node waits in all faces there.
+void LoopStep::wait_at(LoopFront& front, VertexId n, double local_edge_length) {
+    front.put_on(n, local_edge_length);
+    for (const FaceId f : faces_at(n)) front.set_waiting(mesh_, f, n, true);
+}
+
+/// Returns another node that waits in the face, to be joined with the node: one that does not wait
+/// there again. Of those that do two belong together, which the blade passed when it went back.
+/// They are not joined, as the edge would lie beside the cut, but for the odd one.
 std::optional<VertexId> LoopStep::waiting_partner(const LoopFront& front, FaceId f,
                                                   VertexId v) const {
-    std::optional<VertexId> free, joined;
+    std::optional<VertexId> first, again;
     bool is_odd = false;
     for (int p = 0; p < mesh_.face_size(f); ++p) {
         const VertexId n = mesh_.face_corner(f, p);
-        const LoopFront::Corner corner = LoopFront::corner(mesh_, f, n);
-        if (!front.waits(corner)) continue;
-        const bool is_joined = front.is_joined(corner);
-        if (is_joined) is_odd = !is_odd;
-        if (n != v && !(is_joined ? joined : free)) (is_joined ? joined : free) = n;
+        if (!front.waits(f, n)) continue;
+        const bool waits_again = front.waits_again(mesh_, f, n);
+        if (waits_again) is_odd = !is_odd;
+        if (n != v && !(waits_again ? again : first)) (waits_again ? again : first) = n;
     }
-    if (!front.is_joined(LoopFront::corner(mesh_, f, v))) return free || !is_odd ? free : joined;
-    return is_odd ? free : std::nullopt;
+    if (!front.waits_again(mesh_, f, v)) return first || !is_odd ? first : again;
+    return is_odd ? first : std::nullopt;
 }
 
 /// Passes the faces at a node in which it waits. After divide(face) has returned true, faces have
@@ -111,7 +107,7 @@ void LoopStep::for_faces_where_waits(const LoopFront& front, VertexId v, Divide 
         for (const CellId e : star(v))
             for (int f = 0; f < mesh_.num_faces(e); ++f) {
                 const FaceId face{e, f}, other = mesh_.neighbor(face);
-                if ((other.is_valid() && other < face) || !front.waits(mesh_, face, v)) continue;
+                if ((other.is_valid() && other < face) || !front.waits(face, v)) continue;
                 if (!divide(face)) continue;
                 is_done = false;
                 f = -1;
@@ -136,7 +132,7 @@ void LoopStep::join_all() {
         for_faces_where_waits(front_, v, [&](FaceId f) {
             std::vector<VertexId> waiting;
             for (int p = 0; p < mesh_.face_size(f); ++p)
-                if (const VertexId n = mesh_.face_corner(f, p); front_.waits(mesh_, f, n))
+                if (const VertexId n = mesh_.face_corner(f, p); front_.waits(f, n))
                     waiting.push_back(n);
             if (waiting.size() < 2) return false;
             const auto length_of = [&](std::size_t begin) {
@@ -152,11 +148,13 @@ void LoopStep::join_all() {
         });
 }
 
-/// Divides a face by an edge between two nodes of a cut.
+/// Takes a cut from one node that waits in a face to another one: along a new edge, or along an
+/// edge of the face if the cut goes through one of the two, or has made the edge before.
 void LoopStep::join(LoopFront& front, FaceId f, VertexId v, VertexId w) {
     const FaceId other = mesh_.neighbor(f);
-    if (front.is_marked(v, w) && is_edge_of(mesh_, f, v, w)) {
-        join_along(front, f, v, w);
+    if ((front.is_marked(v, w) || front.is_through(v) || front.is_through(w)) &&
+        is_edge_of(mesh_, f, v, w)) {
+        join_along(front, f, std::array{v, w});
         return;
     }
     std::vector<VertexId> path = divide_face(f, v, w);
@@ -168,29 +166,32 @@ void LoopStep::join(LoopFront& front, FaceId f, VertexId v, VertexId w) {
     }
     const Dart along = find_dart(mesh_, f.cell, path[0], path[1]);
     for (const FaceId part : {along.face, opposite(mesh_, along).face})
-        for (const VertexId n : {v, w}) front.set_waiting(LoopFront::corner(mesh_, part, n), false);
+        for (const VertexId n : {v, w}) front.set_waiting(mesh_, part, n, false);
     cross_again(front, f.cell, path);
     let_all_pass(&front, f.cell, path);
     close_at(front, std::array{f.cell, other.cell}, v, path[1]);
 }
 
-/// Joins two nodes of a cut that wait in a face, along an edge of the face that is on the cut.
-void LoopStep::join_along(LoopFront& front, FaceId f, VertexId v, VertexId w) {
-    for (const VertexId n : {v, w}) front.set_waiting(LoopFront::corner(mesh_, f, n), false);
+/// Takes a cut along edges of a face, between two nodes that wait there.
+void LoopStep::join_along(LoopFront& front, FaceId f, std::span<const VertexId> path) {
+    for (const VertexId n : {path.front(), path.back()}) front.set_waiting(mesh_, f, n, false);
     const CellId cells[] = {f.cell, mesh_.neighbor(f).cell};
-    for (const CellId e : cells) {
-        if (!e.is_valid()) continue;
-        const std::vector<Edge>& open = front.open_edges(e);
-        if (std::ranges::find(open, edge_between(v, w)) != open.end())
-            front.set_closed(e, v, w);
-        else
-            front.set_open(e, v, w);
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+        if (!front.lies_on(path[i], path[i + 1])) front.set_along(path[i], path[i + 1]);
+        for (const CellId e : cells) {
+            if (!e.is_valid()) continue;
+            if (front.is_open(e, path[i], path[i + 1]))
+                front.set_closed(e, path[i], path[i + 1]);
+            else
+                front.set_open(e, path[i], path[i + 1]);
+        }
     }
-    close_at(front, cells, v, w);
-    // Without the edge, another path at its ends can be closed.
+    close_at(front, cells, path[0], path[1]);
+    // Without the edges, another path at their ends can be closed.
     for (const CellId e : cells)
         for (const Edge& edge : std::vector(front.open_edges(e)))
-            if (edge.a == v || edge.b == v || edge.a == w || edge.b == w)
+            if (std::ranges::find(path, edge.a) != path.end() ||
+                std::ranges::find(path, edge.b) != path.end())
                 close_at(front, std::array{e}, edge.a, edge.b);
 }
 
@@ -208,7 +209,7 @@ void LoopStep::close_at(LoopFront& front, std::span<const CellId> cells, VertexI
 std::vector<LoopFront*> LoopStep::cuts_with(FaceId f) {
     std::vector<LoopFront*> found;
     for_cuts(nullptr, [&](const Cut& cut) {
-        if (cut.front.is_cut_face(mesh_, f)) found.push_back(&cut.front);
+        if (cut.front.is_cut_face(f)) found.push_back(&cut.front);
     });
     return found;
 }
@@ -219,9 +220,7 @@ std::vector<LoopFront*> LoopStep::cuts_with(FaceId f) {
 std::vector<VertexId> LoopStep::divide_face(FaceId f, VertexId v, VertexId w) {
     const FaceId other = mesh_.neighbor(f);
     const auto have_edge = [&](CellId e) { return find_dart(mesh_, e, v, w).is_valid(); };
-    const LoopFront::Corner at_v = LoopFront::corner(mesh_, f, v),
-                            at_w = LoopFront::corner(mesh_, f, w);
-    const std::vector<LoopFront*> owners = cuts_with(f);
+    const FaceStates states = take_states(f);
     std::vector<VertexId> path{v, w};
     if (have_edge(f.cell) || (other.is_valid() && have_edge(other.cell))) {
         const VertexId middle = edit_->divide_face_beside(f, v, w);
@@ -238,157 +237,57 @@ std::vector<VertexId> LoopStep::divide_face(FaceId f, VertexId v, VertexId w) {
     }
     divided_.push_back(f.cell);
     if (other.is_valid()) divided_.push_back(other.cell);
-    for_cuts(nullptr, [&](const Cut& cut) {
-        cut.front.divide(at_v, path[1]);
-        cut.front.divide(at_w, path[path.size() - 2]);
-    });
-    for (LoopFront* front : owners)
-        for (std::size_t i = 0; i + 1 < path.size(); ++i) front->mark(path[i], path[i + 1]);
+    const Dart d = find_dart(mesh_, f.cell, path[0], path[1]);
+    for (const auto& [front, state] : states) {
+        for (const FaceId part : {d.face, opposite(mesh_, d).face}) front->put(mesh_, part, state);
+        for (std::size_t i = 0; i + 1 < path.size() && state.is_on_cut; ++i)
+            front->mark(path[i], path[i + 1]);
+    }
     return path;
 }
 
-/// Goes round a node of a cell, from an edge that comes to it, to the next place where the cut is:
-/// an open edge, or a corner at which the node waits. Returns the other end of the edge; an invalid
-/// id at a corner, and if there is only the edge from which it starts.
-/// @param arriving  the dart to the node
-/// @param is_left   true to turn to the faces on the left of the dart first
-VertexId LoopStep::turn(const LoopFront& front, Dart arriving, bool is_left) const {
-    const VertexId n = to(mesh_, arriving), start = from(mesh_, arriving);
-    const std::vector<Edge>& open = front.open_edges(arriving.face.cell);
-    Dart side = is_left ? arriving : opposite(mesh_, arriving);  // in a face at the node
-    for (int left = mesh_.num_faces(side.face.cell); left > 0; --left) {
-        const Dart leaving = is_left ? next(mesh_, side) : previous(mesh_, side);
-        const VertexId end = is_left ? to(mesh_, leaving) : from(mesh_, leaving);
-        if (front.waits(mesh_, side.face, n) || end == start) return {};
-        if (std::ranges::find(open, edge_between(n, end)) != open.end()) return end;
-        side = opposite(mesh_, leaving);
-    }
-    return {};
-}
-
-/// Returns a closed path of open edges of a cell, which an edge from v to w has completed; empty if
-/// there is none. At a node with several ways the path turns to the next edge, so that it does not
-/// part what belongs together.
-std::vector<VertexId> LoopStep::path_from(const LoopFront& front, CellId e, VertexId v,
-                                          VertexId w) const {
-    const std::vector<Edge>& open = front.open_edges(e);
-    const auto num_ways = [&](VertexId n) {
-        return std::ranges::count_if(open, [&](const Edge& x) { return x.a == n || x.b == n; }) - 1;
-    };
-    for (const bool is_left : {true, false}) {
-        std::vector<VertexId> path{v, w};
-        for (;;) {
-            const VertexId before = path[path.size() - 2], n = path.back();
-            VertexId end;
-            if (num_ways(n) == 1) {
-                for (const Edge& x : open)
-                    if (x.a == n ? x.b != before : x.b == n && x.a != before)
-                        end = x.a == n ? x.b : x.a;
-            } else {
-                const Dart arriving = find_dart(mesh_, e, before, n);
-                end = turn(front, arriving, is_left);
-                if (!end.is_valid()) end = turn(front, arriving, !is_left);
-            }
-            if (!end.is_valid()) break;
-            const auto first = std::ranges::find(path, end);
-            if (first == path.end()) {
-                path.push_back(end);
-                continue;
-            }
-            path.erase(path.begin(), first);
-            if (path.size() > 2 &&
-                (num_ways(end) == 1 || parts_evenly(front, e, path.back(), path[0], path[1])))
-                return path;
-            break;
-        }
-    }
-    return {};
-}
-
-/// True if a path in a cell leaves an even number of places where the cut is on each side of a
-/// node: open edges, and corners at which the node waits.
-bool LoopStep::parts_evenly(const LoopFront& front, CellId e, VertexId from_node, VertexId n,
-                            VertexId to_node) const {
-    const std::vector<Edge>& open = front.open_edges(e);
-    bool is_even = true;
-    Dart side = find_dart(mesh_, e, from_node, n);
-    for (int left = mesh_.num_faces(e); left > 0; --left) {
-        if (front.waits(mesh_, side.face, n)) is_even = !is_even;
-        const Dart leaving = next(mesh_, side);
-        const VertexId end = to(mesh_, leaving);
-        if (end == to_node || end == from_node) return is_even;
-        if (std::ranges::find(open, edge_between(n, end)) != open.end()) is_even = !is_even;
-        side = opposite(mesh_, leaving);
-    }
-    return false;
-}
-
-/// Divides a cell if the edge completes a closed path.
-void LoopStep::close(LoopFront& front, CellId e, VertexId v, VertexId w) {
-    if (std::ranges::find(front.open_edges(e), edge_between(v, w)) == front.open_edges(e).end())
-        return;
-    if (&front == &front_ && stays_whole(e)) return;
-    const std::vector<VertexId> path = path_from(front, e, v, w);
-    if (path.empty()) return;
-    const CellId added = edit_->divide_cell(e, path);
-    if (only_ && !stays_whole(e)) only_->insert(added);
-    divided_.insert(divided_.end(), {e, added});
-    for (auto& [n, begins] : rings_)
-        for (CellId& begin : begins)
-            if (begin == e && mesh_.corner_of(e, n) < 0) begin = added;
-    front_.divide(mesh_, e, added);
-    for (SuspendedLoops& blade : resting_) blade.front.divide(mesh_, e, added);
-    for (std::size_t i = 0; i < path.size(); ++i)
-        for (const CellId part : {e, added})
-            front.set_closed(part, path[i], path[(i + 1) % path.size()]);
-    const FaceId face{added, mesh_.num_faces(added) - 1};
-    for_cuts(&front, [&](const Cut& cut) { make_wait_in(cut.front, face, path); });
-    for_cuts(&front, [&](const Cut& cut) {
-        if (cut.resting != nullptr || is_swept_)
-            for (const VertexId n : path) join_at(cut.front, n);
-    });
-    // The path can be another one, which touches that of the edge.
-    for (const CellId part : {e, added})
-        if (find_dart(mesh_, part, v, w).is_valid()) close(front, part, v, w);
-}
-
-/// Divides the cells that were to stay whole, but that the cut has come all round.
-void LoopStep::close_all() {
-    only_.reset();
-    for (std::size_t before = 0; before != mesh_.element_capacity();) {
-        before = mesh_.element_capacity();  // a part can have another closed path
-        for (const CellId e : front_.open_cells())
-            for (const Edge& edge : std::vector(front_.open_edges(e)))
-                close(front_, e, edge.a, edge.b);
-    }
-}
-
-/// Divides a face, which lies on a cut, by a node in its middle.
-void LoopStep::divide_at_centre(FaceId f) {
+/// Divides a face by a node in its middle, which it returns. On the cuts on which the face lies,
+/// the edges are marked.
+VertexId LoopStep::divide_face_at_centre(FaceId f) {
     const FaceId other = mesh_.neighbor(f);
     const int size = mesh_.face_size(f);
     std::vector<std::pair<VertexId, double>> sources;
-    std::vector<LoopFront::Corner> corners;
-    for (int p = 0; p < size; ++p) {
-        sources.emplace_back(mesh_.face_corner(f, p), 1.0 / size);
-        corners.push_back(LoopFront::corner(mesh_, f, sources.back().first));
-    }
-    const std::vector<LoopFront*> owners = cuts_with(f);
-    std::vector<const LoopFront*> unsettled;
-    for_cuts(nullptr, [&](const Cut& cut) {
-        if (!half_of(cut, f).is_settled()) unsettled.push_back(&cut.front);
-    });
+    for (int p = 0; p < size; ++p) sources.emplace_back(mesh_.face_corner(f, p), 1.0 / size);
+    const FaceStates states = take_states(f);
     const VertexId centre = edit_->divide_face_at_centre(f);
     place_new_node(centre, sources);
     divided_.push_back(f.cell);
     if (other.is_valid()) divided_.push_back(other.cell);
-    for (const LoopFront::Corner& corner : corners) {
-        for_cuts(nullptr, [&](const Cut& cut) { cut.front.divide(corner, centre); });
-        for (LoopFront* front : owners) front->mark(corner.node, centre);
-    }
+    for (const auto& [front, state] : states)
+        for (const auto& [n, weight] : sources) {
+            front->put(mesh_, find_dart(mesh_, f.cell, centre, n).face, state);
+            if (state.is_on_cut) front->mark(n, centre);
+        }
+    return centre;
+}
+
+/// Forgets what the cuts do in a face that is to be divided, and returns it.
+LoopStep::FaceStates LoopStep::take_states(FaceId f) {
+    FaceStates states;
+    for_cuts(nullptr, [&](const Cut& cut) {
+        if (LoopFront::FaceState state = cut.front.take(mesh_, f); !state.is_empty())
+            states.emplace_back(&cut.front, std::move(state));
+    });
+    return states;
+}
+
+/// Divides a face, which lies on a cut, by a node in its middle.
+void LoopStep::divide_at_centre(FaceId f) {
+    std::vector<VertexId> corners;
+    for (int p = 0; p < mesh_.face_size(f); ++p) corners.push_back(mesh_.face_corner(f, p));
+    std::vector<const LoopFront*> unsettled;
+    for_cuts(nullptr, [&](const Cut& cut) {
+        if (!half_of(cut, f).is_settled()) unsettled.push_back(&cut.front);
+    });
+    const VertexId centre = divide_face_at_centre(f);
     Passed passed;
-    for (const LoopFront::Corner& corner : corners) {
-        std::vector<VertexId> path{corner.node, centre};
+    for (const VertexId n : corners) {
+        std::vector<VertexId> path{n, centre};
         for_cuts(nullptr, [&](const Cut& cut) {
             if (std::ranges::find(unsettled, &cut.front) == unsettled.end())
                 let_pass(cut, f.cell, path, passed, true);
@@ -403,7 +302,13 @@ void LoopStep::triangulate_all() {
     std::ranges::sort(divided_);
     divided_.erase(std::unique(divided_.begin(), divided_.end()), divided_.end());
     const auto is_done = [&](FaceId f) {
-        return mesh_.face_size(f) == 3 || !mesh_.neighbor(f).is_valid() || cuts_with(f).empty();
+        if (mesh_.face_size(f) == 3 || !mesh_.neighbor(f).is_valid()) return true;
+        bool is_new = false;
+        for_cuts(nullptr, [&](const Cut& cut) {
+            const LoopFront::FaceState& state = cut.front.state(f);
+            is_new = is_new || (state.is_on_cut && !state.was_there);
+        });
+        return !is_new;
     };
     passes_left_ = most_passes(divided_.size());
     // NOLINTNEXTLINE(modernize-loop-convert): the list grows in the loop
@@ -414,7 +319,7 @@ void LoopStep::triangulate_all() {
                 const auto waits = [&](VertexId n) {
                     bool is_any = false;
                     for_cuts(nullptr, [&](const Cut& cut) {
-                        is_any = is_any || cut.front.waits(mesh_, {e, f}, n);
+                        is_any = is_any || cut.front.waits({e, f}, n);
                     });
                     return is_any;
                 };

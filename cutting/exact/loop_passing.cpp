@@ -20,15 +20,15 @@ void LoopStep::make_wait_in(LoopFront& front, FaceId f, std::span<const VertexId
         if (!front.is_on(n)) continue;
         std::size_t count = 0;
         for (int k = 0; k < mesh_.num_faces(f.cell); ++k)
-            if (k != f.face && front.waits(mesh_, {f.cell, k}, n)) ++count;
+            if (k != f.face && front.waits({f.cell, k}, n)) ++count;
         for (const Edge& edge : front.open_edges(f.cell))
             if (edge.a == n || edge.b == n) ++count;
-        front.set_waiting(LoopFront::corner(mesh_, f, n), count % 2 == 1);
+        front.set_waiting(mesh_, f, n, count % 2 == 1);
     }
 }
 
-/// Where a cut has divided a face by the edges of a path, lets it wait in both parts if it is to
-/// cross the path again: its nodes do not lie exactly where the blade has been.
+/// Where a cut has divided a face by the edges of a path, lets it pass the path at one of its ends
+/// if it is to cross the path again: its nodes do not lie exactly where the blade has been.
 void LoopStep::cross_again(LoopFront& front, CellId e, std::span<const VertexId> path) {
     const Dart along = find_dart(mesh_, e, path[0], path[1]);
     const FaceId parts[] = {along.face, opposite(mesh_, along).face};
@@ -40,7 +40,11 @@ void LoopStep::cross_again(LoopFront& front, CellId e, std::span<const VertexId>
         const auto distance = [&](VertexId n) { return x ? (now(cut, n) - *x).norm() : 0.0; };
         const VertexId n =
             distance(path.back()) < distance(path.front()) ? path.back() : path.front();
-        for (const FaceId part : parts) front.set_waiting(LoopFront::corner(mesh_, part, n), true);
+        if (cut.resting == nullptr && !is_swept_)
+            for (const FaceId part : parts)
+                front.set_waiting(mesh_, part, n, !front.waits(part, n));
+        else
+            front.toggle_passed({n, n == path.front() ? path[1] : path[path.size() - 2]});
     });
 }
 
@@ -55,7 +59,7 @@ LoopStep::Half LoopStep::half_of(const Cut& cut, FaceId f) const {
     const auto at = [&](int p) { return now(cut, mesh_.face_corner(f, p)); };
     for (int p = 0; p < size; ++p) {
         const VertexId n = mesh_.face_corner(f, p), next = mesh_.face_corner(f, (p + 1) % size);
-        if (cut.front.waits(mesh_, f, n)) {
+        if (cut.front.waits(f, n)) {
             half.waiting.push_back(n);
             half.is_odd = !half.is_odd;
         }
@@ -132,14 +136,13 @@ void LoopStep::let_pass(const Cut& cut, CellId e, std::vector<VertexId>& path, P
                         bool is_one_of_many) {
     if (cut.front.is_empty() && cut.resting != nullptr) return;
     const Dart along = find_dart(mesh_, e, path[0], path[1]);
-    if (!along.is_valid() || cut.front.is_marked(path[0], path[1])) return;
+    if (!along.is_valid() || cut.front.lies_on(path[0], path[1])) return;
     const FaceId faces[] = {along.face, opposite(mesh_, along).face};
     for (const VertexId end : {path.front(), path.back()}) {
-        if (!cut.front.waits(mesh_, faces[0], end) || !cut.front.waits(mesh_, faces[1], end))
-            continue;
+        if (!cut.front.waits(faces[0], end) || !cut.front.waits(faces[1], end)) continue;
         const Half half = half_of(cut, faces[0]);
         const bool is_here = half.is_settled();
-        cut.front.set_waiting(LoopFront::corner(mesh_, faces[is_here ? 1 : 0], end), false);
+        cut.front.set_waiting(mesh_, faces[is_here ? 1 : 0], end, false);
     }
     const Half halves[] = {half_of(cut, faces[0]), half_of(cut, faces[1])};
     if (halves[0].is_settled() || (halves[1].is_settled() && !is_one_of_many)) return;
@@ -151,7 +154,7 @@ void LoopStep::let_pass(const Cut& cut, CellId e, std::vector<VertexId>& path, P
     const VertexId middle =
         divide_edge(path[at], path[at + 1], std::clamp(place, least_place, 1.0 - least_place));
     path.insert(path.begin() + static_cast<std::ptrdiff_t>(at) + 1, middle);
-    cut.front.put_on(middle, length);
+    wait_at(cut.front, middle, length);
     passed.push_back({cut, middle});
 }
 

@@ -22,7 +22,7 @@ void LoopStep::meet_earlier_cuts() {
                                        [&](VertexId n) { return cut.front.is_on(n); });
         });
         if (!is_at_cut) continue;
-        if (is_swept_ && !only_ && goes_along(cut.front) && front_.add(mesh_, cut.front))
+        if (is_swept_ && !only_ && goes_along(cut.front) && front_.add(cut.front))
             cut.front = {};
         else
             resting_.push_back(cut);
@@ -47,7 +47,7 @@ bool LoopStep::goes_along(const LoopFront& cut) const {
 std::array<VertexId, 2> LoopStep::nodes_near(const LoopFront& cut, const Edge& edge,
                                              const EdgeIntersection& x) const {
     const double length = rest_length(edge.a, edge.b);
-    const bool is_marked = cut.is_marked(edge.a, edge.b);
+    const bool is_marked = cut.lies_on(edge.a, edge.b);
     const auto if_near = [&](VertexId n, double distance) {
         const double share = is_swept_ ? nearness_of_blade : nearness;
         const bool is_near =
@@ -83,15 +83,8 @@ std::optional<VertexId> LoopStep::own_node_at(const Edge& edge, const EdgeInters
 
 /// Takes this cut, which goes through a node, to the other side of an edge there.
 void LoopStep::pass_at(VertexId v, VertexId end) {
-    std::vector<VertexId> others;  // so that a corner of several faces is switched once
-    for (const FaceId f : faces_at(v)) {
-        const LoopFront::Corner corner = LoopFront::corner(mesh_, f, v);
-        if (corner.previous != end && corner.next != end) continue;
-        const VertexId other = corner.previous == end ? corner.next : corner.previous;
-        if (std::ranges::find(others, other) != others.end()) continue;
-        others.push_back(other);
-        front_.set_waiting(corner, !front_.waits(corner));
-    }
+    for (const FaceId f : faces_at(v))
+        if (is_edge_of(mesh_, f, v, end)) front_.set_waiting(mesh_, f, v, !front_.waits(f, v));
 }
 
 /// Where a node waits in a face, and only an edge that the blade has passed at another node of the
@@ -114,19 +107,19 @@ void LoopStep::settle() {
 
 /// Returns the edge of a face to whose other side the cut is to go, so that it leaves the face
 /// where the one node that waits there has no partner; nothing if there is no such node or edge.
-std::optional<LoopFront::PassedEdge> LoopStep::edge_to_pass(FaceId f) const {
+std::optional<LoopFront::EdgeAt> LoopStep::edge_to_pass(FaceId f) const {
     int num_waiting = 0;
-    std::optional<LoopFront::PassedEdge> found;
+    std::optional<LoopFront::EdgeAt> found;
     bool is_odd = false;
     const int size = mesh_.face_size(f);
     for (int p = 0; p < size; ++p) {
         const VertexId n = mesh_.face_corner(f, p), after = mesh_.face_corner(f, (p + 1) % size);
-        if (front_.waits(mesh_, f, n)) ++num_waiting;
+        if (front_.waits(f, n)) ++num_waiting;
         const VertexId node = front_.passed_at(n, after);
         if (!node.is_valid()) continue;
         is_odd = !is_odd;
-        if (!found && !front_.waits(mesh_, f, node))
-            found = LoopFront::PassedEdge{node, node == n ? after : n};
+        if (!found && !front_.waits(f, node))
+            found = LoopFront::EdgeAt{node, node == n ? after : n};
     }
     if (num_waiting != 1 || !is_odd) return std::nullopt;
     return found;
@@ -145,9 +138,7 @@ bool LoopStep::parts_nodes(CellId e) const {
         return begins[static_cast<std::size_t>(d.face.face)] +
                2 * static_cast<std::size_t>(d.position) + (is_second ? 1 : 0);
     };
-    const auto is_on_a_cut = [&](FaceId f) {
-        return mesh_.is_on_cut(f) || front_.is_cut_face(mesh_, f);
-    };
+    const auto is_on_a_cut = [&](FaceId f) { return mesh_.is_on_cut(f) || front_.is_cut_face(f); };
     std::vector<VertexId> on_cuts;
     for (int f = 0; f < mesh_.num_faces(e); ++f)
         if (is_on_a_cut({e, f}))
@@ -167,7 +158,7 @@ bool LoopStep::parts_nodes(CellId e) const {
             if (!sides.relate(end_of(d, false), end_of(d, true),
                               front_.passed_at(n, after).is_valid()) ||
                 (!is_on_cut && !sides.relate(end_of(d, true), end_of(next(mesh_, d), false),
-                                             front_.waits(mesh_, d.face, after))) ||
+                                             front_.waits(d.face, after))) ||
                 !sides.relate(end_of(d, false), end_of(twin, true), is_open))
                 return false;
             if (front_.is_on(n) || std::ranges::find(on_cuts, n) != on_cuts.end()) continue;
@@ -213,10 +204,10 @@ bool LoopStep::lengthen_path(CellId e) {
         for (int p = 0; p < mesh_.face_size({e, f}); ++p) {
             const Dart d{{e, f}, p};
             const VertexId n = from(mesh_, d);
-            if (!is_end(n) || !front_.waits(mesh_, d.face, n)) continue;
+            if (!is_end(n) || !front_.waits(d.face, n)) continue;
             for (int q = 0; q < mesh_.face_size(d.face); ++q) {
                 const VertexId other = mesh_.face_corner(d.face, q);
-                if (other == n || !front_.waits(mesh_, d.face, other)) continue;
+                if (other == n || !front_.waits(d.face, other)) continue;
                 if (!found || (is_end(other) && !is_end(found->second))) found = {d, other};
             }
         }
@@ -229,13 +220,13 @@ bool LoopStep::lengthen_path(CellId e) {
         const int size = mesh_.face_size({e, f});
         for (int p = 0; p < size; ++p) {
             const VertexId n = mesh_.face_corner({e, f}, p);
-            if (!is_end(n) || !front_.waits(mesh_, {e, f}, n)) continue;
+            if (!is_end(n) || !front_.waits({e, f}, n)) continue;
             for (int q = 0; q < size; ++q) {
                 const VertexId a = mesh_.face_corner({e, f}, q),
                                b = mesh_.face_corner({e, f}, (q + 1) % size),
                                node = front_.passed_at(a, b);
                 if (!node.is_valid()) continue;
-                const LoopFront::PassedEdge edge{node, node == a ? b : a};
+                const LoopFront::EdgeAt edge{node, node == a ? b : a};
                 front_.toggle_passed(edge);
                 pass_at(edge.node, edge.end);
                 join_at(front_, edge.node);

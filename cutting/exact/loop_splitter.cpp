@@ -119,16 +119,14 @@ void LoopStep::divide_warped_faces() {
         for (int f = 0; f < count; ++f) {
             const FaceId face{e, f};
             if (mesh_.face_size(face) != 4 || is_plane(mesh_, face)) continue;
-            std::array<std::pair<VertexId, double>, 4> sources;
-            for (int p = 0; p < 4; ++p)
-                sources[static_cast<std::size_t>(p)] = {mesh_.face_corner(face, p), 0.25};
+            std::vector<VertexId> corners;
+            for (int p = 0; p < 4; ++p) corners.push_back(mesh_.face_corner(face, p));
             const CellId other = mesh_.neighbor(face).cell;
             const bool may_be_crossed =
                 !stays_whole(e) || (other.is_valid() && !stays_whole(other));
-            const VertexId centre = edit_->divide_face_at_centre(face);
-            place_new_node(centre, sources);
+            const VertexId centre = divide_face_at_centre(face);
             if (!may_be_crossed) continue;
-            for (const auto& [corner, weight] : sources)
+            for (const VertexId corner : corners)
                 receive({corner, centre}, new_intersections({corner, centre}));
         }
     }
@@ -144,9 +142,18 @@ void LoopStep::divide_next() {
     pending_.erase(found);
     const EdgeIntersection first = intersections.front();
     intersections.erase(intersections.begin());
+    if (const auto node = node_through(edge, first)) {
+        receive(edge, std::move(intersections));
+        go_through(*node, *node == edge.a ? edge.b : edge.a);
+        return;
+    }
     if (const auto node = own_node_at(edge, first)) {
         receive(edge, std::move(intersections));
-        front_.toggle_passed({*node, *node == edge.a ? edge.b : edge.a});
+        const LoopFront::EdgeAt passed{*node, *node == edge.a ? edge.b : edge.a};
+        if (is_swept_)
+            front_.toggle_passed(passed);
+        else
+            pass_at(passed.node, passed.end);
         return;
     }
     if (!intersections.empty()) pending_.emplace(edge, std::move(intersections));
@@ -154,9 +161,57 @@ void LoopStep::divide_next() {
     const double length = rest_length(edge.a, edge.b);
     const VertexId middle = divide_edge(edge.a, edge.b, place);
     ++report_.edges_divided;
-    front_.put_on(middle, length);
+    wait_at(front_, middle, length);
+    for (const VertexId end : {edge.a, edge.b}) front_.set_crossed({middle, end});
     made_.push_back(middle);
     if (is_swept_) join_at(front_, middle);
+}
+
+/// Returns the end of an edge through which the cut goes there, if it has not crossed the edge
+/// before: a node that is on the cut so, or one so near that it counts as lying on the surface.
+std::optional<VertexId> LoopStep::node_through(const Edge& edge, const EdgeIntersection& x) const {
+    for (const VertexId node : nodes_near(front_, edge, x))
+        if (node.is_valid()) {
+            const bool is_again =
+                front_.is_marked(edge.a, edge.b) || front_.is_crossed(edge.a, edge.b);
+            return front_.is_through(node) && !is_again ? std::optional(node) : std::nullopt;
+        }
+    if (front_.passed_at(edge.a, edge.b).is_valid()) return std::nullopt;
+    const Vec3 along = point(edge.b)[1] - point(edge.a)[1];
+    const double sine = x.normal.isZero(0.0) ? 1.0 : std::abs(x.normal.dot(along)) / along.norm(),
+                 height = sine * rest_length(edge.a, edge.b);
+    const auto is_near = [&](VertexId n, double share) {
+        return share * height <= nearness_of_nodes * longest_edge_at(n);
+    };
+    const bool is_a = x.place <= 0.5;
+    if (is_a ? is_near(edge.a, x.place) : is_near(edge.b, 1.0 - x.place))
+        return is_a ? edge.a : edge.b;
+    return std::nullopt;
+}
+
+/// Returns the length of the longest edge at a node, at rest, m.
+double LoopStep::longest_edge_at(VertexId n) const {
+    const auto [it, is_new] = longest_edges_.try_emplace(n, 0.0);
+    if (!is_new) return it->second;
+    for (const FaceId f : faces_at(n)) {
+        const int size = mesh_.face_size(f);
+        for (int p = 0; p < size; ++p)
+            if (mesh_.face_corner(f, p) == n)
+                it->second =
+                    std::max({it->second, rest_length(n, mesh_.face_corner(f, (p + 1) % size)),
+                              rest_length(n, mesh_.face_corner(f, (p + size - 1) % size))});
+    }
+    return it->second;
+}
+
+/// Takes this cut through a node, to the other side of an edge there.
+void LoopStep::go_through(VertexId n, VertexId end) {
+    if (!front_.is_on(n)) ++report_.nodes_snapped;
+    front_.put_through(n, rest_length(n, end));
+    front_.set_crossed({n, end});
+    if (passed_through_.insert(n).second) made_.push_back(n);
+    pass_at(n, end);
+    if (is_swept_) join_at(front_, n);
 }
 
 /// Follows the division of an edge: the intersections that are still to come are with its halves.

@@ -46,6 +46,9 @@ class LoopStep {
     static constexpr double nearness = default_snap;
     /// Share of an edge: the same for a blade, which does not come back to the same place exactly.
     static constexpr double nearness_of_blade = 0.1;
+    /// Share of the longest edge at a node: a cut goes through a node that is nearer to it. Faces
+    /// that are opened count as inside the body by twice as much: so the node is on its own side.
+    static constexpr double nearness_of_nodes = 0.5 * default_snap;
     /// Share of an edge: a node is not made nearer to an end, so that no edge is without length.
     static constexpr double least_place = 2e-3;
 
@@ -55,6 +58,9 @@ class LoopStep {
         return new_points_[n.index() - num_old_nodes_];
     }
     bool stays_whole(CellId e) const { return only_ && !only_->contains(e); }
+    static bool is_edge_of(const topology::Mesh& mesh, FaceId f, VertexId a, VertexId b) {
+        return find_dart(mesh, f, a, b).is_valid() || find_dart(mesh, f, b, a).is_valid();
+    }
     double rest_length(VertexId a, VertexId b) const {
         return (mesh_.rest_position(b) - mesh_.rest_position(a)).norm();
     }
@@ -99,31 +105,44 @@ class LoopStep {
     void divide_pending(const Edge& edge, VertexId middle, double place);
     void divide_warped_faces();
     void divide_next();
+    std::optional<VertexId> node_through(const Edge& edge, const EdgeIntersection& x) const;
+    double longest_edge_at(VertexId n) const;
+    void go_through(VertexId n, VertexId end);
 
     // How edges, faces and cells are divided and opened: loop_division.cpp.
     VertexId divide_edge(VertexId a, VertexId b, double place);
     void note_rings(VertexId middle, VertexId a, std::span<const CellId> cells);
     std::vector<CellId> star(VertexId v) const;
     std::vector<FaceId> faces_at(VertexId v) const;
+    void wait_at(LoopFront& front, VertexId n, double local_edge_length);
     std::optional<VertexId> waiting_partner(const LoopFront& front, FaceId f, VertexId v) const;
     template <class Divide>
     void for_faces_where_waits(const LoopFront& front, VertexId v, Divide divide);
     void join_at(LoopFront& front, VertexId v);
     void join_all();
     void join(LoopFront& front, FaceId f, VertexId v, VertexId w);
-    void join_along(LoopFront& front, FaceId f, VertexId v, VertexId w);
+    void join_along(LoopFront& front, FaceId f, std::span<const VertexId> path);
     void close_at(LoopFront& front, std::span<const CellId> cells, VertexId v, VertexId w);
     std::vector<LoopFront*> cuts_with(FaceId f);
     std::vector<VertexId> divide_face(FaceId f, VertexId v, VertexId w);
+    VertexId divide_face_at_centre(FaceId f);
+    using FaceStates = std::vector<std::pair<LoopFront*, LoopFront::FaceState>>;
+    FaceStates take_states(FaceId f);
+    void divide_at_centre(FaceId f);
+    void triangulate_all();
+    void open_faces();
+
+    // How a cut goes through cells: loop_closing.cpp.
     std::vector<VertexId> path_from(const LoopFront& front, CellId e, VertexId v, VertexId w) const;
     VertexId turn(const LoopFront& front, topology::Dart arriving, bool is_left) const;
     bool parts_evenly(const LoopFront& front, CellId e, VertexId from, VertexId n,
                       VertexId to) const;
+    std::vector<FaceId> faces_beside(CellId e, std::span<const VertexId> path, bool is_left) const;
+    std::vector<FaceId> faces_within(CellId e, std::span<const VertexId> path) const;
+    CellId divide_cell(LoopFront& front, CellId e, std::span<const VertexId> path);
+    void close_along(LoopFront& front, std::span<const FaceId> faces, double local_edge_length);
     void close(LoopFront& front, CellId e, VertexId v, VertexId w);
     void close_all();
-    void divide_at_centre(FaceId f);
-    void triangulate_all();
-    void open_faces();
 
     // Where the blade comes to a cut again: loop_returns.cpp.
     void meet_earlier_cuts();
@@ -134,7 +153,7 @@ class LoopStep {
     std::optional<VertexId> own_node_at(const Edge& edge, const EdgeIntersection& x) const;
     void pass_at(VertexId v, VertexId end);
     void settle();
-    std::optional<LoopFront::PassedEdge> edge_to_pass(FaceId f) const;
+    std::optional<LoopFront::EdgeAt> edge_to_pass(FaceId f) const;
     bool parts_nodes(CellId e) const;
     void close_parted();
     bool lengthen_path(CellId e);
@@ -168,8 +187,10 @@ class LoopStep {
     std::vector<MovingPoint> new_points_;
     std::unordered_map<Edge, EdgeIntersections, EdgeHash> pending_;  // in the order of times
     std::priority_queue<Turn> queue_;
-    std::vector<CellId> crossed_;  // in ascending order
-    std::vector<VertexId> made_;   // nodes on crossed edges
+    std::vector<CellId> crossed_;                  // in ascending order
+    std::vector<VertexId> made_;                   // nodes on crossed edges, or at their ends
+    std::unordered_set<VertexId> passed_through_;  // those of them that were there before
+    mutable std::unordered_map<VertexId, double> longest_edges_;  // at nodes, at rest, m
     /// One cell of each ring, of nodes whose cells are in several rings.
     std::unordered_map<VertexId, std::vector<CellId>> rings_;
     std::vector<CellId> divided_;  // cells at divided edges and faces, and parts of such

@@ -32,13 +32,13 @@ void LoopFront::draw_back(const Mesh& mesh) {
         const int size = mesh.face_size(f);
         const auto at = [&](int q) { return mesh.face_corner(f, (q + size) % size); };
         const auto is_on_cut = [&](VertexId n, VertexId next) {
-            return is_on(n) && is_on(next) && is_marked(n, next);
+            return is_on(n) && is_on(next) && lies_on(n, next);
         };
         if (is_on_cut(at(p - 1), at(p))) return;
         // An edge that is not on the cut may be passed at its other end, too: that is not here.
         bool is_other_side = passed_at(at(p - 1), at(p)) == at(p);
         for (int q = p; q < p + size; ++q) {
-            is_other_side ^= waits(mesh, f, at(q));
+            is_other_side ^= waits(f, at(q));
             const VertexId passed = passed_at(at(q), at(q + 1));
             if (is_on_cut(at(q), at(q + 1))) {
                 is_other_side ^= passed.is_valid();

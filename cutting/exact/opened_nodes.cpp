@@ -33,10 +33,8 @@ struct Face {
     double width;  // the shortest altitude, m
 };
 
-/// Appends the opened faces of a cell. Faces of whole cells were opened whole, or lie beside what
-/// was removed.
+/// Appends the opened faces of a cell.
 void append_opened_faces(const Mesh& mesh, CellId e, std::vector<Face>& faces) {
-    if (!mesh.is_polyhedron(e) || mesh.whole_cell(e)) return;
     for (int f = 0; f < mesh.num_faces(e); ++f) {
         const FaceId face{e, f};
         if (!mesh.is_on_cut(face)) continue;
@@ -144,7 +142,11 @@ void OpenedNodes::find_all(const Mesh& mesh, double usual) {
     usual_ = usual;
     std::vector<VertexId> nodes;
     for (const CellId e : mesh.elements())
-        if (mesh.is_polyhedron(e)) std::ranges::copy(mesh.corners(e), std::back_inserter(nodes));
+        for (int f = 0; f < mesh.num_faces(e); ++f)
+            if (mesh.is_on_cut({e, f})) {
+                std::ranges::copy(mesh.corners(e), std::back_inserter(nodes));
+                break;
+            }
     find_at(mesh, std::move(nodes));
     settle(mesh, std::numeric_limits<std::size_t>::max());
 }
@@ -171,12 +173,13 @@ void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes) {
         double area = 0.0;
         bool is_beside = false;
         for (const CellId e : star) {
-            // Faces of whole cells were opened whole, or lie beside what was removed.
-            if (!mesh.is_polyhedron(e) || mesh.whole_cell(e)) continue;
             for (int f = 0; f < mesh.num_faces(e); ++f) {
                 const FaceId face{e, f};
                 if (!mesh.is_on_cut(face)) continue;
                 is_beside = true;
+                // That of a whole cell was there before the cut: its nodes are not moved while the
+                // blade may still stand on them.
+                if (!mesh.is_polyhedron(e) || mesh.whole_cell(e)) continue;
                 const int size = mesh.face_size(face);
                 for (int p = 0; p < size; ++p) {
                     if (mesh.face_corner(face, p) != n) continue;

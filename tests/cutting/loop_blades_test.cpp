@@ -193,7 +193,7 @@ TEST(LoopFront, IsNotOnAMeshThatLacksItsNodes) {
     EXPECT_FALSE(is_on([&](LoopFront& front) { front.set_open(CellId(1), here, here); }));
     EXPECT_FALSE(is_on([&](LoopFront& front) {
         front.put_on(here, 1.0);
-        front.set_waiting({here, VertexId(1), there}, false);
+        front.set_waiting(mesh, {CellId(0), 0}, there, true);
     }));
 }
 
@@ -282,6 +282,20 @@ bool is_cut_all_round(const Mesh& mesh, CellId e, const Divider& plane, IsCut is
     return true;
 }
 
+/// True if a cell reaches to one side of a plane by less than a cut's tolerance: there the cut goes
+/// along faces of it.
+bool is_grazed(const Mesh& mesh, CellId e, const Divider& plane) {
+    double least = 0.0, most = 0.0, longest = 0.0;
+    for (const VertexId a : mesh.corners(e)) {
+        const double height = plane.height(mesh.rest_position(a));
+        least = std::min(least, height);
+        most = std::max(most, height);
+        for (const VertexId b : mesh.corners(e))
+            longest = std::max(longest, (mesh.rest_position(a) - mesh.rest_position(b)).norm());
+    }
+    return std::min(most, -least) <= default_snap * longest;
+}
+
 /// A carrier that is cut in part moves as if it were whole, but for one that is cut all round.
 TEST(LoopSplitter, EndsWithEveryCellPartedOrWhole) {
     for (const int num_steps : {1, 6})
@@ -319,7 +333,7 @@ TEST(LoopSplitter, EndsWithEveryCellPartedOrWhole) {
                 num_parted += num_parts[e.index()] > 1;
                 num_at_edge += share > 0.0 && share < 1.0;
                 // Near a half, the nodes beside the plane decide.
-                if (std::abs(share - 0.5) < 0.05) continue;
+                if (std::abs(share - 0.5) < 0.05 || is_grazed(uncut, e, planes[0])) continue;
                 if (share > 0.5) {
                     EXPECT_GT(num_parts[e.index()], 1) << share;
                 } else if (num_parts[e.index()] > 1) {
