@@ -163,10 +163,9 @@ void KnownSurfaces::note(const Mesh& mesh, const CutSurface& surface, const Loop
     auto number = find(surface, size);
     // A place of the surface is where it crosses an edge that was there before.
     const auto know_from = [&](VertexId a, VertexId b) {
-        const bool are_old = std::max(a, b).index() < changes.node_capacity_before;
-        const auto crossing =
-            are_old ? crossing_between(surface, x[a], x[b]) : std::optional<Crossing>();
-        if (number || !crossing) return;
+        if (number || std::max(a, b).index() >= changes.node_capacity_before) return;
+        const auto crossing = crossing_between(surface, x[a], x[b]);
+        if (!crossing) return;
         number = static_cast<Number>(known_.size());
         known_.push_back({surface.identity(), x[a] + crossing->place * (x[b] - x[a]),
                           crossing->normal.normalized()});
@@ -181,7 +180,7 @@ void KnownSurfaces::note(const Mesh& mesh, const CutSurface& surface, const Loop
             if (record.num_sources == 1) nodes.emplace_back(record.id, record.sources[0].node);
         std::ranges::sort(nodes);
         for (const auto& [n, source] : nodes)
-            if (front.is_on(source))
+            if (!number && front.is_on(source))
                 for (const VertexId other : neighbors(mesh, n)) know_from(source, other);
     }
     if (!number) return;

@@ -13,8 +13,8 @@ namespace incise::cutting {
 using topology::Dart;
 
 /// Goes round a node of a cell, from an edge that comes to it, to the next place where the cut is:
-/// an open edge, or a corner at which the node waits. Returns the other end of the edge; an invalid
-/// id at a corner, and if there is only the edge from which it starts.
+/// an open edge, or a face in which the node waits. Returns the other end of the edge; an invalid
+/// id at a face, and if there is only the edge from which it starts.
 /// @param arriving  the dart to the node
 /// @param is_left   true to turn to the faces on the left of the dart first
 VertexId LoopStep::turn(const LoopFront& front, Dart arriving, bool is_left) const {
@@ -71,7 +71,7 @@ std::vector<VertexId> LoopStep::path_from(const LoopFront& front, CellId e, Vert
 }
 
 /// True if a path in a cell leaves an even number of places where the cut is on each side of a
-/// node: open edges, and corners at which the node waits.
+/// node: open edges, and faces in which the node waits.
 bool LoopStep::parts_evenly(const LoopFront& front, CellId e, VertexId from_node, VertexId n,
                             VertexId to_node) const {
     const std::vector<Edge>& open = front.open_edges(e);
@@ -130,8 +130,8 @@ std::vector<FaceId> LoopStep::faces_within(CellId e, std::span<const VertexId> p
                 };
                 volume += at(0).cross(at(p - 1)).dot(at(p)) / 6.0;
             }
-        if (volume >= least) continue;
-        least = volume;
+        if (std::abs(volume) >= least) continue;
+        least = std::abs(volume);
         found = std::move(faces);
     }
     return found;
@@ -213,8 +213,13 @@ void LoopStep::close_along(LoopFront& front, std::span<const FaceId> faces,
 /// Divides the cells that were to stay whole, but that the cut has come all round.
 void LoopStep::close_all() {
     only_.reset();
-    for (std::size_t before = 0; before != mesh_.element_capacity();) {
-        before = mesh_.element_capacity();  // a part can have another closed path
+    const auto num_open = [&] {
+        std::size_t count = 0;
+        for (const CellId e : front_.open_cells()) count += front_.open_edges(e).size();
+        return count;
+    };
+    for (std::size_t before = 0; before != num_open();) {
+        before = num_open();  // a part can have another closed path
         for (const CellId e : front_.open_cells())
             for (const Edge& edge : std::vector(front_.open_edges(e)))
                 close(front_, e, edge.a, edge.b);

@@ -154,7 +154,7 @@ void LoopStep::join(LoopFront& front, FaceId f, VertexId v, VertexId w) {
     const FaceId other = mesh_.neighbor(f);
     if ((front.is_marked(v, w) || front.is_through(v) || front.is_through(w)) &&
         is_edge_of(mesh_, f, v, w)) {
-        join_along(front, f, std::array{v, w});
+        join_along(front, f, v, w);
         return;
     }
     std::vector<VertexId> path = divide_face(f, v, w);
@@ -172,27 +172,23 @@ void LoopStep::join(LoopFront& front, FaceId f, VertexId v, VertexId w) {
     close_at(front, std::array{f.cell, other.cell}, v, path[1]);
 }
 
-/// Takes a cut along edges of a face, between two nodes that wait there.
-void LoopStep::join_along(LoopFront& front, FaceId f, std::span<const VertexId> path) {
-    for (const VertexId n : {path.front(), path.back()}) front.set_waiting(mesh_, f, n, false);
+/// Takes a cut along an edge of a face, between two nodes that wait there.
+void LoopStep::join_along(LoopFront& front, FaceId f, VertexId v, VertexId w) {
+    if (!front.is_marked(v, w)) front.set_along(v, w);
+    for (const VertexId n : {v, w}) front.set_waiting(mesh_, f, n, false);
     const CellId cells[] = {f.cell, mesh_.neighbor(f).cell};
-    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-        if (!front.lies_on(path[i], path[i + 1])) front.set_along(path[i], path[i + 1]);
-        for (const CellId e : cells) {
-            if (!e.is_valid()) continue;
-            if (front.is_open(e, path[i], path[i + 1]))
-                front.set_closed(e, path[i], path[i + 1]);
-            else
-                front.set_open(e, path[i], path[i + 1]);
-        }
+    std::vector<Edge> at_ends{edge_between(v, w)};
+    for (const CellId e : cells) {
+        if (!e.is_valid()) continue;
+        if (front.is_open(e, v, w))
+            front.set_closed(e, v, w);
+        else
+            front.set_open(e, v, w);
+        // Without the edge, another path at its ends can be closed.
+        for (const Edge& edge : front.open_edges(e))
+            if (edge.a == v || edge.b == v || edge.a == w || edge.b == w) at_ends.push_back(edge);
     }
-    close_at(front, cells, path[0], path[1]);
-    // Without the edges, another path at their ends can be closed.
-    for (const CellId e : cells)
-        for (const Edge& edge : std::vector(front.open_edges(e)))
-            if (std::ranges::find(path, edge.a) != path.end() ||
-                std::ranges::find(path, edge.b) != path.end())
-                close_at(front, std::array{e}, edge.a, edge.b);
+    for (const Edge& edge : at_ends) close_at(front, star(edge.a), edge.a, edge.b);
 }
 
 /// Divides those of the cells at an edge where it completes a closed path.
@@ -296,8 +292,8 @@ void LoopStep::divide_at_centre(FaceId f) {
     join(passed);
 }
 
-/// Divides the faces on cuts into triangles. They are plane then, and later cuts do not change the
-/// volumes on their two sides.
+/// Divides the new faces on cuts into triangles. They are plane then, and later cuts do not change
+/// the volumes on their two sides.
 void LoopStep::triangulate_all() {
     std::ranges::sort(divided_);
     divided_.erase(std::unique(divided_.begin(), divided_.end()), divided_.end());

@@ -75,7 +75,7 @@ void LoopFront::set_on_cut(const Mesh& mesh, FaceId f, bool is_on_cut, bool was_
         if (!side.is_valid()) continue;
         FaceState& state = state_of(side);
         state.is_on_cut = is_on_cut;
-        state.was_there = was_there;
+        state.was_there = is_on_cut && was_there;
         forget_if_empty(side);
     }
 }
@@ -178,6 +178,7 @@ bool LoopFront::add(const LoopFront& other) {
     for (const auto& [e, faces] : other.faces_)  // likewise a node that waits for both
         for (const auto& [k, state] : faces) {
             FaceState& mine = state_of({e, k});
+            mine.was_there = mine.was_there || state.was_there;
             mine.is_on_cut = mine.is_on_cut || state.is_on_cut;
             for (const VertexId n : state.waiting)
                 if (std::erase(mine.waiting, n) == 0) insert_sorted(mine.waiting, n);
@@ -333,7 +334,15 @@ void LoopFront::apply(const Mesh& mesh, const ChangeSet& changes) {
         }
     }
     if (changes.nodes_removed.empty()) return;
+    const auto is_gone = [&](VertexId n) { return !mesh.is_alive(n); };
     for (const topology::VertexRecord& record : changes.nodes_removed) nodes_.erase(record.id);
+    for (auto* edges : {&crossed_, &passed_})
+        std::erase_if(*edges, [&](const auto& entry) {
+            return is_gone(entry.first.a) || is_gone(entry.first.b);
+        });
+    std::erase_if(along_, [&](const auto& entry) {
+        return is_gone(entry.first.a) || is_gone(entry.first.b);
+    });
     for (auto& entry : open_)
         std::erase_if(entry.second, [&](const Edge& x) { return !is_on(x.a) || !is_on(x.b); });
     std::erase_if(open_, [](const auto& entry) { return entry.second.empty(); });

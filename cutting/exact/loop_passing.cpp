@@ -13,8 +13,8 @@ namespace incise::cutting {
 
 using topology::Dart;
 
-/// Decides at which corners of a face, which another cut has put into a cell, this cut waits. In
-/// one of the two new cells it then has an even number of edges and waiting corners at the node.
+/// Decides which nodes wait in a face that a cut has put into a cell. In each of the two new cells
+/// such a node then has an even number of open edges and of faces in which it waits.
 void LoopStep::make_wait_in(LoopFront& front, FaceId f, std::span<const VertexId> path) {
     for (const VertexId n : path) {
         if (!front.is_on(n)) continue;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "incise/cutting/exact/loop_step.h"
 #include "incise/cutting/exact/side_sets.h"
@@ -16,8 +17,11 @@ using topology::Dart;
 /// Goes on with those earlier cuts to nodes of which the blade comes, and along which it goes.
 /// Others are as if suspended where this one comes to their cells.
 void LoopStep::meet_earlier_cuts() {
+    if (earlier_.unfinished.empty()) return;
+    std::vector<CellId> cells = crossed_;  // and those at this cut, which it may come to divide
+    front_.for_each([&](VertexId n) { std::ranges::copy(star(n), std::back_inserter(cells)); });
     for (SuspendedLoops& cut : earlier_.unfinished) {
-        const bool is_at_cut = std::ranges::any_of(crossed_, [&](CellId e) {
+        const bool is_at_cut = std::ranges::any_of(cells, [&](CellId e) {
             return std::ranges::any_of(mesh_.corners(e),
                                        [&](VertexId n) { return cut.front.is_on(n); });
         });
@@ -91,11 +95,12 @@ void LoopStep::pass_at(VertexId v, VertexId end) {
 /// cut can be where the cut leaves the face again, takes the cut to the other side of that edge.
 void LoopStep::settle() {
     for (const VertexId v : std::vector(made_))
-        for (bool is_done = false; !is_done;) {
+        for (bool is_done = false; !is_done && passes_left_ > 0;) {
             is_done = true;
             for (const FaceId f : faces_at(v)) {
                 const auto edge = edge_to_pass(f);
                 if (!edge) continue;
+                --passes_left_;
                 front_.toggle_passed(*edge);
                 pass_at(edge->node, edge->end);
                 join_at(front_, edge->node);

@@ -181,7 +181,8 @@ std::optional<VertexId> LoopStep::node_through(const Edge& edge, const EdgeInter
     const double sine = x.normal.isZero(0.0) ? 1.0 : std::abs(x.normal.dot(along)) / along.norm(),
                  height = sine * rest_length(edge.a, edge.b);
     const auto is_near = [&](VertexId n, double share) {
-        return share * height <= nearness_of_nodes * longest_edge_at(n);
+        return (!front_.is_on(n) || front_.is_through(n)) &&
+               share * height <= nearness_of_nodes * longest_edge_at(n);
     };
     const bool is_a = x.place <= 0.5;
     if (is_a ? is_near(edge.a, x.place) : is_near(edge.b, 1.0 - x.place))
@@ -206,7 +207,7 @@ double LoopStep::longest_edge_at(VertexId n) const {
 
 /// Takes this cut through a node, to the other side of an edge there.
 void LoopStep::go_through(VertexId n, VertexId end) {
-    if (!front_.is_on(n)) ++report_.nodes_snapped;
+    if (!front_.is_on(n) && n.index() < num_old_nodes_) ++report_.nodes_snapped;
     front_.put_through(n, rest_length(n, end));
     front_.set_crossed({n, end});
     if (passed_through_.insert(n).second) made_.push_back(n);

@@ -121,7 +121,7 @@ class LoopStep {
     void join_at(LoopFront& front, VertexId v);
     void join_all();
     void join(LoopFront& front, FaceId f, VertexId v, VertexId w);
-    void join_along(LoopFront& front, FaceId f, std::span<const VertexId> path);
+    void join_along(LoopFront& front, FaceId f, VertexId v, VertexId w);
     void close_at(LoopFront& front, std::span<const CellId> cells, VertexId v, VertexId w);
     std::vector<LoopFront*> cuts_with(FaceId f);
     std::vector<VertexId> divide_face(FaceId f, VertexId v, VertexId w);

@@ -161,10 +161,11 @@ void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes) {
     }
     std::vector<CellId> star;
     for (const VertexId n : nodes) {
-        Node node;
+        Node node, former;
         if (const auto before = nodes_.find(n); before != nodes_.end()) {
             node.is_moved = before->second.is_moved;
             node.offset = before->second.offset;
+            former = std::move(before->second);
             nodes_.erase(before);
         }
         mesh.star(n, star);
@@ -196,7 +197,17 @@ void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes) {
         if (is_beside) unsettled_.push_back(n);
         // At the end of a cut, both of its sides meet.
         constexpr double least_share = 0.1;
-        if (!(outwards.norm() > least_share * area)) continue;
+        if (!(outwards.norm() > least_share * area)) {
+            // One on faces of whole cells stays as it is until it is settled again.
+            const auto is_left = [&](const Plane& plane) {
+                return std::ranges::all_of(plane, [&](VertexId v) { return mesh.is_alive(v); });
+            };
+            former.around.clear();
+            if (is_beside && area == 0.0 && !former.planes.empty() &&
+                std::ranges::all_of(former.planes, is_left))
+                nodes_[n] = std::move(former);
+            continue;
+        }
         std::ranges::sort(node.around);  // so that sums do not depend on the order of the cells
         node.margin = margin_of(mesh, n, usual_);
         nodes_[n] = std::move(node);
