@@ -152,15 +152,14 @@ void LoopStep::close(LoopFront& front, CellId e, VertexId v, VertexId w) {
     for (const CellId part : parts)
         for (std::size_t i = 0; i < path.size(); ++i)
             front.set_closed(part, path[i], path[(i + 1) % path.size()]);
-    if (parts[1].is_valid())
-        for_cuts(nullptr, [&](const Cut& cut) {
-            make_wait_in(cut.front, {parts[1], mesh_.num_faces(parts[1]) - 1}, path);
-        });
-    if (parts[1].is_valid())
+    if (parts[1].is_valid()) {
+        const FaceId made{parts[1], mesh_.num_faces(parts[1]) - 1};
+        for_cuts(nullptr, [&](const Cut& cut) { make_wait_in(cut.front, made, path); });
         for_cuts(&front, [&](const Cut& cut) {
             if (cut.resting != nullptr || is_swept_)
                 for (const VertexId n : path) join_at(cut.front, n);
         });
+    }
     // The path can be another one, which touches that of the edge.
     for (const CellId part : parts)
         if (part.is_valid() && find_dart(mesh_, part, v, w).is_valid()) close(front, part, v, w);

@@ -282,8 +282,8 @@ bool is_cut_all_round(const Mesh& mesh, CellId e, const Divider& plane, IsCut is
     return true;
 }
 
-/// True if a cell reaches to one side of a plane by less than a cut's tolerance: there the cut goes
-/// along faces of it.
+/// True if a cell reaches to one side of a plane by less than a cut's tolerance at nodes: there the
+/// cut goes along faces of it.
 bool is_grazed(const Mesh& mesh, CellId e, const Divider& plane) {
     double least = 0.0, most = 0.0, longest = 0.0;
     for (const VertexId a : mesh.corners(e)) {
@@ -293,7 +293,7 @@ bool is_grazed(const Mesh& mesh, CellId e, const Divider& plane) {
         for (const VertexId b : mesh.corners(e))
             longest = std::max(longest, (mesh.rest_position(a) - mesh.rest_position(b)).norm());
     }
-    return std::min(most, -least) <= default_snap * longest;
+    return std::min(most, -least) <= 0.5 * default_snap * longest;
 }
 
 /// A carrier that is cut in part moves as if it were whole, but for one that is cut all round.

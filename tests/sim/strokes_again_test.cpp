@@ -98,7 +98,9 @@ void expect_two_pieces(End end, bool is_plane_of_mesh) {
             const std::vector<double> shares =
                 shares_after_strokes(swaying_body(bricks, jitter, 7 + seed), end, plane);
             ASSERT_GE(shares.size(), 2u);
-            EXPECT_GT(shares[1], 0.4 - (is_plane_of_mesh ? 1e-3 : 0.0));
+            // The nodes are in the plane, but for those of the body that is jittered.
+            const double most_lost = !is_plane_of_mesh ? 0.0 : jitter == 0.0 ? 1e-5 : 1e-3;
+            EXPECT_GT(shares[1], 0.4 - most_lost);
             EXPECT_GT(shares[0] + shares[1], 1.0 - 1e-5);
         }
 }
