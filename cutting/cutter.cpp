@@ -98,9 +98,11 @@ Cutter::Cutter(const Mesh& mesh, std::span<const Vec3> positions, bool has_loops
     : boxes_(mesh, positions),
       before_(mesh, positions),
       now_(mesh, positions),
-      has_loops_(has_loops || std::ranges::any_of(mesh.elements(), [&](CellId e) {
-                     return mesh.kind(e) != topology::CellKind::tetrahedron;
-                 })) {
+      has_loops_(has_loops ||
+                 std::ranges::any_of(
+                     mesh.elements(),
+                     [&](CellId e) { return mesh.kind(e) != topology::CellKind::tetrahedron; })),
+      num_followed_(positions.size()) {
     constexpr double share_of_carrier = 1e-7;
     const double size = std::cbrt(mean_carrier_volume(mesh));
     shift_ = share_of_carrier * size;
@@ -117,7 +119,12 @@ void Cutter::settle(const Mesh& mesh) {
 
 void Cutter::follow_motion(const Mesh& mesh, std::span<const Vec3> positions) {
     std::swap(before_, now_);
+    const std::size_t num_known = std::min(num_followed_, positions.size());
+    num_followed_ = positions.size();
     now_.assign(positions);
+    opened_.move_as_before(now_);
+    has_moved_ =
+        !std::ranges::equal(now_.values().first(num_known), before_.values().first(num_known));
     constexpr std::size_t most_at_a_time = 500;  // a step takes no longer than one that cuts
     if (!has_cut_in_progress()) opened_.settle(mesh, most_at_a_time);
     opened_.move_all(positions, now_);
@@ -210,9 +217,17 @@ std::vector<SuspendedLoops> Cutter::unfinished_cuts() {
     return cuts;
 }
 
-Split Cutter::noted(Split done, std::optional<std::size_t> worker) {
+/// Returns the tolerance in the present motion of a cut through cells of any shape. In tissue that
+/// moves, a cut comes near to the same nodes on one side and then on the other. With a smaller
+/// tolerance it would leave thin cells between the nodes and itself, and cut them off later.
+double Cutter::tolerance(double snap) const {
+    return std::max(snap, has_moved_ ? default_snap : smallest_snap);
+}
+
+Split Cutter::noted(Split done, std::optional<std::size_t> worker, double snap) {
     if (!done.changes.is_empty())
-        own_edit_ = {done.changes.epoch_after, worker, done.report.elements_crossed > 0};
+        own_edit_ = {done.changes.epoch_after, worker, done.report.elements_crossed > 0, false,
+                     snap};
     return done;
 }
 
@@ -225,11 +240,12 @@ Split Cutter::split(CutId id, Mesh& mesh, const std::vector<Vec3>& edge_before,
         if (tissue.may_meet(box_round(edge_before, edge_after))) {
             auto resting = suspended_cuts(id.index, &Cut::loops);
             auto unfinished = unfinished_cuts();
+            const double snap = tolerance(cut.snap);
             done = noted(split_cells(mesh, tissue,
                                      SweptEdge(shifted(id.index, edge_before),
                                                shifted(id.index, edge_after)),
-                                     cut.loops, resting, {nullptr, unfinished}),
-                         id.index);
+                                     cut.loops, {snap}, resting, {nullptr, unfinished}),
+                         id.index, snap);
             std::erase_if(unfinished_, [](const LoopFront& front) { return front.is_empty(); });
         }
     } else if (!cut.front.is_empty() || tissue.may_meet(box_round(edge_before, edge_after))) {
@@ -251,9 +267,10 @@ Split Cutter::end_cut(CutId id, Mesh& mesh, const fragments::FragmentMesh& fragm
     if (has_loops_) {
         auto resting = suspended_cuts(id.index, &Cut::loops);
         auto unfinished = unfinished_cuts();
+        const double snap = tolerance(cut.snap);
         Split done = noted(finish_cells(mesh, fragments, tissue, blade.moved_by(shift_of(id.index)),
-                                        cut.loops, resting, {nullptr, unfinished}),
-                           id.index);
+                                        cut.loops, {snap}, resting, {nullptr, unfinished}),
+                           id.index, snap);
         if (!cut.loops.is_empty()) {
             unfinished_.push_back(std::exchange(cut.loops, {}));
             own_edit_.has_ended = true;
@@ -283,11 +300,11 @@ Split Cutter::split(Mesh& mesh, const CutSurface& surface, double snap) {
             const Displacement displacement(now_, std::move(seen.displaced));
             if (displacement.farthest() > 0.0)
                 boxes_.move(mesh, now_.values(), displacement.farthest());
-            done = split_cells(mesh, motion(mesh), surface, front, resting,
+            done = split_cells(mesh, motion(mesh), surface, front, {tolerance(snap)}, resting,
                                {&seen.on_surface, unfinished});
         }
         known_.note(mesh, surface, front, done.changes, now_, opened_.usual());
-        return noted(std::move(done), std::nullopt);
+        return noted(std::move(done), std::nullopt, tolerance(snap));
     }
     CutFront front;
     auto resting = suspended_cuts(std::nullopt, &Cut::front);
@@ -323,7 +340,7 @@ void Cutter::apply(const Mesh& mesh, const ChangeSet& changes) {
         }
     boxes_.apply(mesh, changes);
     if (has_loops_) {
-        opened_.apply(mesh, changes);
+        opened_.apply(mesh, changes, own.snap);
         known_.apply(changes);
         for (std::size_t i = 0; i + (own.has_ended ? 1 : 0) < unfinished_.size(); ++i)
             unfinished_[i].apply(mesh, changes);

@@ -131,7 +131,7 @@ class Cutter {
     /// Archives everything except where the present motion began.
     static void archive(auto& ar, auto& self) {
         ar(self.has_loops_, self.shift_, self.cuts_, self.boxes_, self.snap_history_, self.now_,
-           self.opened_, self.known_, self.unfinished_);
+           self.opened_, self.known_, self.unfinished_, self.num_followed_);
     }
 
   private:
@@ -152,6 +152,7 @@ class Cutter {
         std::optional<std::size_t> cut;  // the cut whose front has already followed
         bool history_followed = false;   // true if the snap history has already followed
         bool has_ended = false;          // true if the last unfinished cut has already followed
+        double snap = default_snap;      // tolerance of the cut
     };
 
     Cut& cut_of(CutId id);
@@ -166,9 +167,10 @@ class Cutter {
     /// Returns the last motion of the tissue. Cost: that of the boxes that edits have changed.
     TissueMotion motion(const topology::Mesh& mesh) {
         boxes_.refresh(mesh, now_.values());
-        return {mesh, before_.values(), now_.values(), &boxes_};
+        return {mesh, before_.values(), now_.values(), &boxes_, !has_moved_};
     }
-    Split noted(Split done, std::optional<std::size_t> worker);
+    double tolerance(double snap) const;
+    Split noted(Split done, std::optional<std::size_t> worker, double snap = default_snap);
     std::vector<SuspendedLoops> unfinished_cuts();
 
     topology::ElementBoxes boxes_;
@@ -177,8 +179,10 @@ class Cutter {
     // Positions before and after the last motion, by vertex id.
     topology::NodeField<VertexId, Vec3> before_, now_;
     OwnEdit own_edit_;
-    bool has_loops_;      // true unless all cells are tetrahedra
-    double shift_ = 0.0;  // of blades, m: see shifted()
+    bool has_loops_;                // true unless all cells are tetrahedra
+    bool has_moved_ = false;        // true if the tissue is not at rest in the present motion
+    std::size_t num_followed_ = 0;  // nodes of the last motion
+    double shift_ = 0.0;            // of blades, m: see shifted()
     OpenedNodes opened_;
     KnownSurfaces known_;
     std::vector<LoopFront> unfinished_;  // of cuts that have ended inside the body

@@ -333,7 +333,7 @@ class World {
 
     /// The format of save(). It differs between two builds of Incise if save() or a checkpoint of a
     /// run lists other members, or if a world computes other bits.
-    static constexpr std::uint32_t state_format = 29;
+    static constexpr std::uint32_t state_format = 30;
 
     /// Returns the state of the world as bytes: mesh, positions, velocities, gravity, damping,
     /// constraints, loads, contact, tools and cuts in progress. The materials and the solver are

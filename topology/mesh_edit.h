@@ -75,10 +75,10 @@ class MeshEdit {
     /// other side. Returns the other part.
     /// @pre  the corners have no edge in a cell at the face
     FaceId divide_face(FaceId f, VertexId a, VertexId b);
-    /// Divides a face likewise by two new edges, from `a` by a new node to `b`. The node is at rest
-    /// between these two, a twentieth of the way to the corner that is farthest from their line.
-    /// Returns the node.
-    VertexId divide_face_beside(FaceId f, VertexId a, VertexId b);
+    /// Divides a face likewise by two new edges, from `a` by a new node to `b`. At rest, the node
+    /// is on the way from the middle between these two to `apex`, a corner that is not on their
+    /// line, at this share of the way, 0 < share < 1. Returns the node.
+    VertexId divide_face_beside(FaceId f, VertexId a, VertexId b, VertexId apex, double share);
     /// Divides a face, on both sides, by a new node that has an edge to each of its corners.
     /// Returns the node, which is at the mean of the corners at rest.
     VertexId divide_face_at_centre(FaceId f);

@@ -91,24 +91,13 @@ FaceId MeshEdit::divide_face(FaceId f, VertexId a, VertexId b) {
     return divide_face_by(f, a, b, {});
 }
 
-VertexId MeshEdit::divide_face_beside(FaceId f, VertexId a, VertexId b) {
+VertexId MeshEdit::divide_face_beside(FaceId f, VertexId a, VertexId b, VertexId apex,
+                                      double share) {
     require_dividable(f);
-    const Vec3 along = mesh_.rest_position(b) - mesh_.rest_position(a);
-    VertexId farthest;
-    double most = -1.0;
-    for (int p = 0; p < mesh_.face_size(f); ++p) {
-        const VertexId n = mesh_.face_corner(f, p);
-        const Vec3 to_n = mesh_.rest_position(n) - mesh_.rest_position(a);
-        const double size = n == a || n == b ? -1.0 : along.cross(to_n).squaredNorm();
-        if (size <= most) continue;
-        most = size;
-        farthest = n;
-    }
-    constexpr double share = 0.05;
     VertexRecord record{VertexId(mesh_.node_capacity()), Vec3::Zero(), {}, 3};
     record.sources[0] = {a, 0.5 * (1.0 - share)};
     record.sources[1] = {b, 0.5 * (1.0 - share)};
-    record.sources[2] = {farthest, share};
+    record.sources[2] = {apex, share};
     for (std::size_t k = 0; k < 3; ++k)
         record.rest_position +=
             record.sources[k].weight * mesh_.rest_position(record.sources[k].node);

@@ -108,10 +108,29 @@ std::vector<FaceId> LoopStep::faces_beside(CellId e, std::span<const VertexId> p
     return faces;
 }
 
+/// True if the middle of a face, and the middles of its edges, lie on a surface at once, to the
+/// tolerance.
+bool LoopStep::lies_on_surface(FaceId f) const {
+    const int size = mesh_.face_size(f);
+    Vec3 middle = Vec3::Zero();
+    double longest = 0.0;
+    std::vector<Vec3> points;
+    for (int p = 0; p < size; ++p) {
+        const VertexId n = mesh_.face_corner(f, p), next = mesh_.face_corner(f, (p + 1) % size);
+        middle += point(n)[1] / size;
+        points.emplace_back(0.5 * (point(n)[1] + point(next)[1]));
+        longest = std::max(longest, (point(next)[1] - point(n)[1]).norm());
+    }
+    points.push_back(middle);
+    return std::ranges::all_of(points, [&](const Vec3& x) {
+        return surface_.comes_within(x, 2.0 * nearness_of_nodes_ * longest);
+    });
+}
+
 /// Returns the faces of a cell on that side of a closed path on which there is almost nothing
 /// between them and a face along the path; none if both sides have a volume.
 std::vector<FaceId> LoopStep::faces_within(CellId e, std::span<const VertexId> path) const {
-    constexpr double flat = 5e-3;  // thickness, as a share of the width
+    const double flat = (2.0 / 3.0) * nearness_of_nodes_;  // thickness, as a share of the width
     const Vec3& origin = mesh_.rest_position(path[0]);
     Vec3 area = Vec3::Zero();
     for (std::size_t i = 2; i < path.size(); ++i)
@@ -122,6 +141,8 @@ std::vector<FaceId> LoopStep::faces_within(CellId e, std::span<const VertexId> p
     for (const bool is_left : {true, false}) {
         std::vector<FaceId> faces = faces_beside(e, path, is_left);
         if (faces.size() == 1) return faces;
+        if (!is_swept_ && std::ranges::all_of(faces, [&](FaceId f) { return lies_on_surface(f); }))
+            return faces;
         double volume = 0.0;
         for (const FaceId f : faces)
             for (int p = 2; p < mesh_.face_size(f); ++p) {

@@ -80,9 +80,29 @@ void LoopStep::wait_at(LoopFront& front, VertexId n, double local_edge_length) {
     for (const FaceId f : faces_at(n)) front.set_waiting(mesh_, f, n, true);
 }
 
+/// Returns the other end of an edge of a face that the cut has made earlier, if the cut goes on at
+/// both ends in a cell there: with the edge its path in the cell has no gap. In tissue that moves,
+/// a blade that wavers beside its cut would part slices from it so.
+std::optional<VertexId> LoopStep::end_of_gap(const LoopFront& front, FaceId f, VertexId v) const {
+    const auto goes_on = [&](CellId e, VertexId n, VertexId but) {
+        return std::ranges::any_of(front.open_edges(e), [&](const Edge& edge) {
+            return (edge.a == n && edge.b != but) || (edge.b == n && edge.a != but);
+        });
+    };
+    for (int p = 0; p < mesh_.face_size(f); ++p) {
+        const VertexId n = mesh_.face_corner(f, p);
+        if (n == v || !front.waits(f, n) || !front.is_marked(v, n) || !is_edge_of(mesh_, f, v, n))
+            continue;
+        for (const CellId e : {f.cell, mesh_.neighbor(f).cell})
+            if (e.is_valid() && goes_on(e, v, n) && goes_on(e, n, v)) return n;
+    }
+    return std::nullopt;
+}
+
 /// Returns another node that waits in the face, to be joined with the node: one that does not wait
 /// there again. Of those that do two belong together, which the blade passed when it went back.
-/// They are not joined, as the edge would lie beside the cut, but for the odd one.
+/// They are not joined, as the edge would lie beside the cut, but for the odd one, and where the
+/// cut has a gap between them.
 std::optional<VertexId> LoopStep::waiting_partner(const LoopFront& front, FaceId f,
                                                   VertexId v) const {
     std::optional<VertexId> first, again;
@@ -94,6 +114,8 @@ std::optional<VertexId> LoopStep::waiting_partner(const LoopFront& front, FaceId
         if (waits_again) is_odd = !is_odd;
         if (n != v && !(waits_again ? again : first)) (waits_again ? again : first) = n;
     }
+    if (tissue_.is_at_rest)
+        if (const auto n = end_of_gap(front, f, v)) return n;
     if (!front.waits_again(mesh_, f, v)) return first || !is_odd ? first : again;
     return is_odd ? first : std::nullopt;
 }
@@ -210,6 +232,28 @@ std::vector<LoopFront*> LoopStep::cuts_with(FaceId f) {
     return found;
 }
 
+/// Returns where a path in a face goes from one corner to another if not along a straight line:
+/// that share of the way from the middle between the two to a corner. It is where the surface is,
+/// if it crosses the way, as it does where it dips into the face.
+std::pair<VertexId, double> LoopStep::place_beside(FaceId f, VertexId v, VertexId w) const {
+    constexpr double usual = 0.05, most = 0.5;
+    const Vec3 &a = mesh_.rest_position(v), along = mesh_.rest_position(w) - a;
+    VertexId apex;
+    double largest = -1.0;
+    for (int p = 0; p < mesh_.face_size(f); ++p) {
+        const VertexId n = mesh_.face_corner(f, p);
+        const double size =
+            n == v || n == w ? -1.0 : along.cross(mesh_.rest_position(n) - a).squaredNorm();
+        if (size <= largest) continue;
+        largest = size;
+        apex = n;
+    }
+    MovingPoint middle = point(v);
+    for (std::size_t i = 0; i < 2; ++i) middle[i] = 0.5 * (middle[i] + point(w)[i]);
+    const EdgeIntersections found = intersections_of(surface_, middle, point(apex), 0.0);
+    return {apex, found.empty() ? usual : std::clamp(found.front().place, least_place_, most)};
+}
+
 /// Divides a face by an edge between two of its corners, or by two edges if the cells at the face
 /// have an edge between them. On the cuts on which the face lies, the edges are marked. Returns the
 /// path of the edges.
@@ -219,7 +263,8 @@ std::vector<VertexId> LoopStep::divide_face(FaceId f, VertexId v, VertexId w) {
     const FaceStates states = take_states(f);
     std::vector<VertexId> path{v, w};
     if (have_edge(f.cell) || (other.is_valid() && have_edge(other.cell))) {
-        const VertexId middle = edit_->divide_face_beside(f, v, w);
+        const auto [apex, share] = place_beside(f, v, w);
+        const VertexId middle = edit_->divide_face_beside(f, v, w, apex, share);
         std::vector<std::pair<VertexId, double>> sources;
         const topology::VertexRecord& record = edit_->added(middle);
         sources.reserve(static_cast<std::size_t>(record.num_sources));

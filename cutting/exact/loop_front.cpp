@@ -168,7 +168,8 @@ void LoopFront::divide(VertexId a, VertexId b, VertexId middle, double local_edg
 bool LoopFront::add(const LoopFront& other) {
     for (const auto& [n, node] : other.nodes_)
         if (is_on(n) && !(node.is_through && is_through(n))) return false;
-    nodes_.insert(other.nodes_.begin(), other.nodes_.end());
+    for (const auto& [n, node] : other.nodes_)
+        nodes_.try_emplace(n, Node{node.local_edge_length, node.is_through, true});
     for (const auto& [a, ends] : other.marked_)
         for (const VertexId b : ends) mark(a, b);
     along_.insert(other.along_.begin(), other.along_.end());

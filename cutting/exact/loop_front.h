@@ -33,17 +33,22 @@ class LoopFront {
     /// Puts a node that the cut has made on it. It waits nowhere yet.
     /// @param local_edge_length  of the edge on which the node was made, at rest, m
     void put_on(VertexId n, double local_edge_length) {
-        nodes_.try_emplace(n, local_edge_length, false);
+        nodes_.try_emplace(n, Node{local_edge_length, false});
     }
     /// Puts a node on the cut that was there before.
     void put_through(VertexId n, double local_edge_length) {
-        nodes_.try_emplace(n, local_edge_length, true);
+        nodes_.try_emplace(n, Node{local_edge_length, true});
     }
     bool is_on(VertexId n) const { return nodes_.contains(n); }
     /// True if the node was there before the cut came.
     bool is_through(VertexId n) const {
         const auto it = nodes_.find(n);
         return it != nodes_.end() && it->second.is_through;
+    }
+    /// True if the node came with another cut, which add() has added.
+    bool is_added(VertexId n) const {
+        const auto it = nodes_.find(n);
+        return it != nodes_.end() && it->second.is_added;
     }
     double local_edge_length(VertexId n) const {
         const auto it = nodes_.find(n);
@@ -168,8 +173,10 @@ class LoopFront {
   private:
     struct Node {
         double local_edge_length = 0.0;  // m
-        bool is_through = false;
-        static void archive(auto& ar, auto& self) { ar(self.local_edge_length, self.is_through); }
+        bool is_through = false, is_added = false;
+        static void archive(auto& ar, auto& self) {
+            ar(self.local_edge_length, self.is_through, self.is_added);
+        }
     };
     FaceState& state_of(FaceId f) { return faces_[f.cell][f.face]; }
     void forget_if_empty(FaceId f);

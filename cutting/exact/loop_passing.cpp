@@ -152,7 +152,7 @@ void LoopStep::let_pass(const Cut& cut, CellId e, std::vector<VertexId>& path, P
     const auto [at, place] = passing_place(cut, path, halves);
     const double length = rest_length(path[at], path[at + 1]);
     const VertexId middle =
-        divide_edge(path[at], path[at + 1], std::clamp(place, least_place, 1.0 - least_place));
+        divide_edge(path[at], path[at + 1], std::clamp(place, least_place_, 1.0 - least_place_));
     path.insert(path.begin() + static_cast<std::ptrdiff_t>(at) + 1, middle);
     wait_at(cut.front, middle, length);
     passed.push_back({cut, middle});

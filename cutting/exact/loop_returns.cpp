@@ -47,15 +47,20 @@ bool LoopStep::goes_along(const LoopFront& cut) const {
 
 /// Returns the ends of an edge, nodes of a cut, to which the surface comes so near that it passes
 /// the edge there; the nearer one first. A blade that comes again to a cut comes not exactly to the
-/// same place, as tissue moves: it is not to cut slices off the cut.
+/// same place, as tissue moves: it is not to cut slices off the cut. But where it turns, it leaves
+/// the cut at once.
 std::array<VertexId, 2> LoopStep::nodes_near(const LoopFront& cut, const Edge& edge,
                                              const EdgeIntersection& x) const {
     const double length = rest_length(edge.a, edge.b);
     const bool is_marked = cut.lies_on(edge.a, edge.b);
     const auto if_near = [&](VertexId n, double distance) {
-        const double share = is_swept_ ? nearness_of_blade : nearness;
-        const bool is_near =
-            cut.is_on(n) && (is_marked || distance < share * cut.local_edge_length(n));
+        if (!cut.is_on(n)) return VertexId();
+        const double share = distance / cut.local_edge_length(n);
+        bool is_near = is_marked || share < nearness;
+        if (is_swept_ && !is_marked)
+            is_near =
+                share < nearness_of_blade && (!tissue_.is_at_rest || share < nearness_at_rest ||
+                                              cut.is_added(n) || is_along(cut, n, x.normal));
         return is_near ? n : VertexId();
     };
     std::array<VertexId, 2> found{if_near(edge.a, x.place * length),
@@ -94,16 +99,19 @@ void LoopStep::pass_at(VertexId v, VertexId end) {
 /// Where a node waits in a face, and only an edge that the blade has passed at another node of the
 /// cut can be where the cut leaves the face again, takes the cut to the other side of that edge.
 void LoopStep::settle() {
-    for (const VertexId v : std::vector(made_))
+    std::vector<VertexId> nodes = made_;
+    nodes.insert(nodes.end(), met_again_.begin(), met_again_.end());
+    for (std::size_t i = 0; i < nodes.size(); ++i)  // more are added
         for (bool is_done = false; !is_done && passes_left_ > 0;) {
             is_done = true;
-            for (const FaceId f : faces_at(v)) {
+            for (const FaceId f : faces_at(nodes[i])) {
                 const auto edge = edge_to_pass(f);
                 if (!edge) continue;
                 --passes_left_;
                 front_.toggle_passed(*edge);
                 pass_at(edge->node, edge->end);
                 join_at(front_, edge->node);
+                if (tissue_.is_at_rest) nodes.push_back(edge->node);
                 is_done = false;
                 break;
             }

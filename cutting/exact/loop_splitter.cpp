@@ -150,14 +150,15 @@ void LoopStep::divide_next() {
     if (const auto node = own_node_at(edge, first)) {
         receive(edge, std::move(intersections));
         const LoopFront::EdgeAt passed{*node, *node == edge.a ? edge.b : edge.a};
-        if (is_swept_)
+        if (is_swept_) {
             front_.toggle_passed(passed);
-        else
+            if (tissue_.is_at_rest) met_again_.push_back(*node);
+        } else
             pass_at(passed.node, passed.end);
         return;
     }
     if (!intersections.empty()) pending_.emplace(edge, std::move(intersections));
-    const double place = std::clamp(first.place, least_place, 1.0 - least_place);
+    const double place = std::clamp(first.place, least_place_, 1.0 - least_place_);
     const double length = rest_length(edge.a, edge.b);
     const VertexId middle = divide_edge(edge.a, edge.b, place);
     ++report_.edges_divided;
@@ -180,9 +181,14 @@ std::optional<VertexId> LoopStep::node_through(const Edge& edge, const EdgeInter
     const Vec3 along = point(edge.b)[1] - point(edge.a)[1];
     const double sine = x.normal.isZero(0.0) ? 1.0 : std::abs(x.normal.dot(along)) / along.norm(),
                  height = sine * rest_length(edge.a, edge.b);
+    constexpr double rounded_up = 1.0 + 1e-9;
     const auto is_near = [&](VertexId n, double share) {
-        return (!front_.is_on(n) || front_.is_through(n)) &&
-               share * height <= nearness_of_nodes * longest_edge_at(n);
+        if (front_.is_on(n) && !front_.is_through(n)) return false;
+        const double most = nearness_of_nodes_ * longest_edge_at(n);
+        if (share * height > most) return false;
+        // That is over the plane of the surface at the intersection.
+        return surface_.comes_within(
+            point(n)[1], rounded_up * most * along.norm() / rest_length(edge.a, edge.b));
     };
     const bool is_a = x.place <= 0.5;
     if (is_a ? is_near(edge.a, x.place) : is_near(edge.b, 1.0 - x.place))
@@ -238,18 +244,19 @@ void LoopStep::divide_pending(const Edge& edge, VertexId middle, double place) {
 }
 
 Split split_cells(Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
-                  LoopFront& front, std::span<SuspendedLoops> resting, const EarlierCuts& earlier) {
-    return LoopStep(mesh, tissue, surface, front, resting, std::nullopt, earlier).run();
+                  LoopFront& front, const SplitOptions& options, std::span<SuspendedLoops> resting,
+                  const EarlierCuts& earlier) {
+    return LoopStep(mesh, tissue, surface, front, options, resting, std::nullopt, earlier).run();
 }
 
 Split finish_cells(Mesh& mesh, const fragments::FragmentMesh& fragments, const TissueMotion& tissue,
-                   const BladeEnd& blade, LoopFront& front, std::span<SuspendedLoops> resting,
-                   const EarlierCuts& earlier) {
+                   const BladeEnd& blade, LoopFront& front, const SplitOptions& options,
+                   std::span<SuspendedLoops> resting, const EarlierCuts& earlier) {
     if (front.is_empty()) return {};
     const BladeEnd end = away_from_cut(blade, nodes_of(front, mesh, tissue.after));
     const BladePlace place = place_of(end, tissue, fragments);
-    Split result = LoopStep(mesh, tissue, end.continuation(place.exit_distance), front, resting,
-                            cells_to_part(end, place, mesh, tissue.after, front), earlier)
+    Split result = LoopStep(mesh, tissue, end.continuation(place.exit_distance), front, options,
+                            resting, cells_to_part(end, place, mesh, tissue.after, front), earlier)
                        .run();
     front.draw_back(mesh);
     return result;

@@ -36,11 +36,12 @@ struct EarlierCuts {
 /// @param surface  what the cut follows
 /// @param front    of the cut, from its earlier steps; of a surface at once, it then has all nodes
 ///                 of the cut
+/// @param options  of the cut
 /// @param resting  the other cuts in progress
 /// @param earlier  cuts that are over; one that is taken up again is left empty
 /// Cost: some microseconds a crossed cell, and the search for them.
 Split split_cells(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
-                  LoopFront& front, std::span<SuspendedLoops> resting,
+                  LoopFront& front, const SplitOptions& options, std::span<SuspendedLoops> resting,
                   const EarlierCuts& earlier = {});
 
 /// Ends a cut at a blade that has stopped, in tissue at rest, and takes the blade out of it. A
@@ -52,6 +53,7 @@ Split split_cells(topology::Mesh& mesh, const TissueMotion& tissue, const CutSur
 /// Cost: as split_cells(), and the search for the cells at the blade's edge.
 Split finish_cells(topology::Mesh& mesh, const fragments::FragmentMesh& fragments,
                    const TissueMotion& tissue, const BladeEnd& blade, LoopFront& front,
-                   std::span<SuspendedLoops> resting, const EarlierCuts& earlier = {});
+                   const SplitOptions& options, std::span<SuspendedLoops> resting,
+                   const EarlierCuts& earlier = {});
 
 }  // namespace incise::cutting

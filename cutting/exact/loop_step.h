@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <optional>
@@ -25,13 +26,14 @@ namespace incise::cutting {
 class LoopStep {
   public:
     LoopStep(topology::Mesh& mesh, const TissueMotion& tissue, const CutSurface& surface,
-             LoopFront& front, std::span<SuspendedLoops> resting,
+             LoopFront& front, const SplitOptions& options, std::span<SuspendedLoops> resting,
              std::optional<std::unordered_set<CellId>> only = std::nullopt,
              const EarlierCuts& earlier = {})
         : mesh_(mesh),
           tissue_(tissue),
           surface_(surface),
           front_(front),
+          nearness_of_nodes_(0.5 * std::max(options.snap, smallest_snap)),
           resting_(resting.begin(), resting.end()),
           only_(std::move(only)),
           earlier_(earlier),
@@ -44,13 +46,9 @@ class LoopStep {
     /// Share of an edge: a surface at once that passes nearer to a node of its own cut passes at
     /// the node. Two intersections with an edge at once that are nearer to each other cancel out.
     static constexpr double nearness = default_snap;
-    /// Share of an edge: the same for a blade, which does not come back to the same place exactly.
-    static constexpr double nearness_of_blade = 0.1;
-    /// Share of the longest edge at a node: a cut goes through a node that is nearer to it. Faces
-    /// that are opened count as inside the body by twice as much: so the node is on its own side.
-    static constexpr double nearness_of_nodes = 0.5 * default_snap;
-    /// Share of an edge: a node is not made nearer to an end, so that no edge is without length.
-    static constexpr double least_place = 2e-3;
+    /// Share of an edge: the same for a blade in tissue that moves, which does not come back to the
+    /// same place exactly, and for one in tissue at rest.
+    static constexpr double nearness_of_blade = 0.1, nearness_at_rest = 1e-3;
 
     MovingPoint point(VertexId n) const {
         if (n.index() < num_old_nodes_)
@@ -115,6 +113,7 @@ class LoopStep {
     std::vector<CellId> star(VertexId v) const;
     std::vector<FaceId> faces_at(VertexId v) const;
     void wait_at(LoopFront& front, VertexId n, double local_edge_length);
+    std::optional<VertexId> end_of_gap(const LoopFront& front, FaceId f, VertexId v) const;
     std::optional<VertexId> waiting_partner(const LoopFront& front, FaceId f, VertexId v) const;
     template <class Divide>
     void for_faces_where_waits(const LoopFront& front, VertexId v, Divide divide);
@@ -124,6 +123,7 @@ class LoopStep {
     void join_along(LoopFront& front, FaceId f, VertexId v, VertexId w);
     void close_at(LoopFront& front, std::span<const CellId> cells, VertexId v, VertexId w);
     std::vector<LoopFront*> cuts_with(FaceId f);
+    std::pair<VertexId, double> place_beside(FaceId f, VertexId v, VertexId w) const;
     std::vector<VertexId> divide_face(FaceId f, VertexId v, VertexId w);
     VertexId divide_face_at_centre(FaceId f);
     using FaceStates = std::vector<std::pair<LoopFront*, LoopFront::FaceState>>;
@@ -138,6 +138,7 @@ class LoopStep {
     bool parts_evenly(const LoopFront& front, CellId e, VertexId from, VertexId n,
                       VertexId to) const;
     std::vector<FaceId> faces_beside(CellId e, std::span<const VertexId> path, bool is_left) const;
+    bool lies_on_surface(FaceId f) const;
     std::vector<FaceId> faces_within(CellId e, std::span<const VertexId> path) const;
     CellId divide_cell(LoopFront& front, CellId e, std::span<const VertexId> path);
     void close_along(LoopFront& front, std::span<const FaceId> faces, double local_edge_length);
@@ -176,6 +177,11 @@ class LoopStep {
     const TissueMotion& tissue_;
     const CutSurface& surface_;
     LoopFront& front_;
+    /// Share of the longest edge at a node: a cut goes through a node that is nearer to it. Faces
+    /// that it opens count as inside the body by twice as much: so the node is on its own side.
+    const double nearness_of_nodes_;
+    /// Share of an edge: a node is not made nearer to an end, so that no edge is without length.
+    const double least_place_ = std::min(nearness_of_nodes_, 2e-3);
     std::vector<SuspendedLoops> resting_;
     std::optional<std::unordered_set<CellId>> only_;  // if set, this cut leaves other cells whole
     const EarlierCuts earlier_;
@@ -189,6 +195,7 @@ class LoopStep {
     std::priority_queue<Turn> queue_;
     std::vector<CellId> crossed_;                  // in ascending order
     std::vector<VertexId> made_;                   // nodes on crossed edges, or at their ends
+    std::vector<VertexId> met_again_;              // nodes of the cut at which the blade has passed
     std::unordered_set<VertexId> passed_through_;  // those of them that were there before
     mutable std::unordered_map<VertexId, double> longest_edges_;  // at nodes, at rest, m
     /// One cell of each ring, of nodes whose cells are in several rings.

@@ -100,7 +100,8 @@ Near near_to(const Mesh& mesh, VertexId n, double distance) {
 /// are much smaller than the edges on which their nodes were made: so cells count that are joined
 /// to those at the node, up to the first of a usual size.
 /// @param usual  the size of cells, m
-double margin_of(const Mesh& mesh, VertexId n, double usual) {
+/// @param snap   tolerance of the cut
+double margin_of(const Mesh& mesh, VertexId n, double usual, double snap) {
     constexpr std::size_t most_cells = 64;
     std::vector<CellId> cells;
     mesh.star(n, cells);
@@ -124,18 +125,22 @@ double margin_of(const Mesh& mesh, VertexId n, double usual) {
             }
         if (cells.size() == end) break;
     }
-    return default_snap * longest;
+    return std::max(snap, smallest_snap) * longest;
 }
 
 }  // namespace
 
-void OpenedNodes::apply(const Mesh& mesh, const ChangeSet& changes) {
+void OpenedNodes::apply(const Mesh& mesh, const ChangeSet& changes, double snap) {
     for (const topology::VertexRecord& record : changes.nodes_removed) nodes_.erase(record.id);
+    for (const topology::VertexRecord& record : changes.nodes_added)  // sources first
+        if (record.num_sources == 1)
+            if (const auto source = nodes_.find(record.sources[0].node); source != nodes_.end())
+                nodes_[record.id].snap = source->second.snap;
     std::vector<VertexId> touched;
     for (const CellId e : topology::touched_cells(changes))
         if (e.index() < mesh.element_capacity() && mesh.is_alive(e))
             std::ranges::copy(mesh.corners(e), std::back_inserter(touched));
-    find_at(mesh, std::move(touched));
+    find_at(mesh, std::move(touched), snap);
 }
 
 void OpenedNodes::find_all(const Mesh& mesh, double usual) {
@@ -147,12 +152,13 @@ void OpenedNodes::find_all(const Mesh& mesh, double usual) {
                 std::ranges::copy(mesh.corners(e), std::back_inserter(nodes));
                 break;
             }
-    find_at(mesh, std::move(nodes));
+    find_at(mesh, std::move(nodes), default_snap);
     settle(mesh, std::numeric_limits<std::size_t>::max());
 }
 
 /// Finds the opened faces at each of some nodes.
-void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes) {
+/// @param snap  tolerance of the cut that has opened those at nodes that had none before
+void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes, double snap) {
     std::ranges::sort(nodes);
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     if (unsettled_.size() > 2 * nodes_.size() + 1000) {  // while a blade rests in the body
@@ -162,7 +168,9 @@ void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes) {
     std::vector<CellId> star;
     for (const VertexId n : nodes) {
         Node node, former;
+        node.snap = snap;
         if (const auto before = nodes_.find(n); before != nodes_.end()) {
+            node.snap = before->second.snap;
             node.is_moved = before->second.is_moved;
             node.offset = before->second.offset;
             former = std::move(before->second);
@@ -209,9 +217,20 @@ void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes) {
             continue;
         }
         std::ranges::sort(node.around);  // so that sums do not depend on the order of the cells
-        node.margin = margin_of(mesh, n, usual_);
+        node.margin = margin_of(mesh, n, usual_, node.snap);
         nodes_[n] = std::move(node);
     }
+}
+
+/// Returns the tolerance of the cut that has opened faces at a node, or beside it.
+double OpenedNodes::snap_at(const Mesh& mesh, VertexId n) const {
+    if (const auto node = nodes_.find(n); node != nodes_.end()) return node->second.snap;
+    double snap = -1.0;
+    for (const VertexId other :
+         near_to(mesh, n, 2.0 * margin_of(mesh, n, usual_, default_snap)).nodes)
+        if (const auto node = nodes_.find(other); node != nodes_.end())
+            snap = std::max(snap, node->second.snap);
+    return snap >= 0.0 ? snap : default_snap;
 }
 
 void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
@@ -227,24 +246,26 @@ void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
     // What a node sees reaches as far as the cells joined to those at nodes near it.
     std::unordered_set<CellId> seen;
     std::vector<VertexId> more;
-    for (const VertexId n : chosen)
-        for (const CellId e :
-             near_to(mesh, n, 2.0 * std::max(margin_of(mesh, n, usual_), default_snap * usual_))
-                 .cells)
+    for (const VertexId n : chosen) {
+        const double snap = std::max(snap_at(mesh, n), default_snap);
+        const double reach = std::max(margin_of(mesh, n, usual_, snap), snap * usual_);
+        for (const CellId e : near_to(mesh, n, 2.0 * reach).cells)
             if (seen.insert(e).second)
                 std::ranges::copy_if(mesh.corners(e), std::back_inserter(more),
                                      [&](VertexId other) { return nodes_.contains(other); });
+    }
     chosen.insert(chosen.end(), more.begin(), more.end());
     std::ranges::sort(chosen);
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     std::unordered_map<CellId, std::vector<Face>> faces_of;
     for (const VertexId n : chosen) {
         Node node;
+        node.snap = snap_at(mesh, n);
         if (const auto before = nodes_.find(n); before != nodes_.end()) {
             node = std::move(before->second);
             nodes_.erase(before);
         }
-        node.margin = margin_of(mesh, n, usual_);
+        node.margin = margin_of(mesh, n, usual_, node.snap);
         node.is_moved = false;
         std::vector<Face> faces;
         for (const CellId e : near_to(mesh, n, 2.0 * node.margin).cells) {

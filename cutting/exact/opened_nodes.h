@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "incise/base/types.h"
+#include "incise/cutting/exact/split.h"
 #include "incise/topology/change_set.h"
 #include "incise/topology/field.h"
 #include "incise/topology/mesh.h"
@@ -28,13 +29,15 @@ class OpenedNodes {
   public:
     using Positions = topology::NodeField<VertexId, Vec3>;
 
-    /// Finds all opened faces of a body. Cost: proportional to its cuts.
+    /// Finds all opened faces of a body. Their cuts are taken to have had the default tolerance.
+    /// Cost: proportional to its cuts.
     /// @param usual  the size of its cells, m
     void find_all(const topology::Mesh& mesh, double usual);
 
     /// Follows an edit of the mesh. Nodes that are new here are not moved before the next
     /// move_all() or move_new(). Cost: proportional to the edit.
-    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes);
+    /// @param snap  tolerance of the cut that has made the edit: see SplitOptions
+    void apply(const topology::Mesh& mesh, const topology::ChangeSet& changes, double snap);
 
     /// Settles nodes that edits have touched.
     /// @param most  so many of them at most
@@ -42,6 +45,10 @@ class OpenedNodes {
     /// Cost: some ten microseconds a node.
     void settle(const topology::Mesh& mesh, std::size_t most);
 
+    /// Moves all nodes in `seen`, by vertex id, by as much as at the last time.
+    void move_as_before(Positions& seen) const {
+        for (const auto& [n, node] : nodes_) seen[n] += node.offset;
+    }
     /// Moves all nodes in `seen`, by vertex id.
     /// @param positions  where the nodes are, m
     void move_all(std::span<const Vec3> positions, Positions& seen);
@@ -61,17 +68,19 @@ class OpenedNodes {
     /// Corners of an opened face, anticlockwise as seen from outside.
     using Plane = std::array<VertexId, 3>;
     struct Node {
+        double snap = default_snap;  // of the cut that has opened its faces
         double margin = 0.0;         // m
         Vec3 offset = Vec3::Zero();  // by which it is moved in the present positions, m
         bool is_moved = false;       // true if by as much as it should be
         std::vector<std::pair<VertexId, VertexId>> around;  // its neighbours round the faces
         std::vector<Plane> planes;                          // of a node that is settled
         static void archive(auto& ar, auto& self) {
-            ar(self.margin, self.offset, self.is_moved, self.around, self.planes);
+            ar(self.snap, self.margin, self.offset, self.is_moved, self.around, self.planes);
         }
     };
 
-    void find_at(const topology::Mesh& mesh, std::vector<VertexId> nodes);
+    void find_at(const topology::Mesh& mesh, std::vector<VertexId> nodes, double snap);
+    double snap_at(const topology::Mesh& mesh, VertexId n) const;
     static void move(VertexId n, Node& node, std::span<const Vec3> positions, Positions& seen);
 
     double usual_ = 0.0;  // size of cells, m

@@ -47,6 +47,8 @@ class CutSurface {
     virtual std::optional<Vec3> normal_near(const Vec3&, double /*distance*/) const {
         return std::nullopt;
     }
+    /// True if a surface that is there as a whole at once comes within `distance`, m, of a point.
+    virtual bool comes_within(const Vec3&, double /*distance*/) const { return true; }
     virtual SurfaceIdentity identity() const { return no_identity; }
     /// True if an edge that moves, as that of a blade, makes the surface during the step.
     virtual bool is_swept() const { return false; }

@@ -16,6 +16,9 @@ class Plane final : public CutSurface {
     void append_crossings(const MovingPoint& a, const MovingPoint& b,
                           std::vector<Crossing>& crossings) const override;
 
+    bool comes_within(const Vec3& x, double distance) const override {
+        return std::abs(normal_.dot(x - point_)) <= distance * normal_.norm();
+    }
     SurfaceIdentity identity() const override { return identity_of_planes; }
 
     /// Returns the side of a point, +1 or -1, exactly. Points on the plane are on side +1.

@@ -209,6 +209,14 @@ void TriangleSurface::append_crossings(const MovingPoint& a, const MovingPoint& 
     Eigen::BVIntersect(tree_->bvh, query);
 }
 
+bool TriangleSurface::comes_within(const Vec3& x, double distance) const {
+    if (tree_->is_empty) return false;
+    const Vec3 reach = Vec3::Constant(distance);
+    AnyWithin query{x, distance * distance, Box(x - reach, x + reach)};
+    Eigen::BVIntersect(tree_->bvh, query);
+    return query.found;
+}
+
 std::optional<Vec3> TriangleSurface::normal_near(const Vec3& x, double distance) const {
     if (tree_->is_empty) return std::nullopt;
     const Vec3 reach = Vec3::Constant(distance);

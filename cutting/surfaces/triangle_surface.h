@@ -21,6 +21,7 @@ class TriangleSurface final : public CutSurface {
     void append_crossings(const MovingPoint& a, const MovingPoint& b,
                           std::vector<Crossing>& crossings) const override;
 
+    bool comes_within(const Vec3& x, double distance) const override;
     bool has_creases() const override { return true; }
     std::optional<Vec3> normal_near(const Vec3& x, double distance) const override;
     /// Returns a hash of the triangles.

@@ -190,7 +190,7 @@ TEST(WayInside, LeadsToTheMiddleOfCellsBesideACut) {
                 mesh, {mesh, rest, rest},
                 cutting::SweptEdge({point - 3.0 * u - 3.0 * v, point + 3.0 * u - 3.0 * v},
                                    {point - 3.0 * u, point + 3.0 * u}),
-                front, {});
+                front, {}, {});
             const Eigen::Matrix3d turn =
                 Eigen::AngleAxisd(random.uniform(0.0, 3.0), random.vector(1.0).normalized())
                     .toRotationMatrix();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "incise/topology/box_mesh.h"
 #include "incise/topology/mesh_metrics.h"
@@ -136,12 +137,12 @@ struct StoppingBlade {
 /// Opens faces as far as the blade gets, in so many steps.
 std::vector<Split> cut_to_the_stop(SplitBody& body, const StoppingBlade& blade, int num_steps,
                                    const SplitOptions& options) {
-    CutFront front;
+    std::optional<CutId> front;
     std::vector<Split> parts;
     for (const auto& surface : sweep(blade.edge(6.0), blade.edge(0.0), num_steps))
-        parts.push_back(body.cut(*surface, front, options, body.positions));
-    parts.push_back(body.finish(blade.end(), front, options));
-    EXPECT_TRUE(front.is_empty());
+        parts.push_back(body.cut(surface, front, options));
+    parts.push_back(body.finish(blade.end(), front));
+    EXPECT_FALSE(body.cutter().is_in_tissue(*front));
     return parts;
 }
 
@@ -234,8 +235,8 @@ TEST(FinishedCut, DoesNothingWhereTheBladeIsOutside) {
     const auto parts = cut_to_the_stop(body, blade, 5, SplitOptions{default_snap});
     EXPECT_TRUE(parts.back().changes.is_empty());
     EXPECT_EQ(topology::components(body.mesh).count, 2);
-    CutFront none;
-    EXPECT_TRUE(body.finish(blade.end(), none, {0.0}).changes.is_empty());
+    std::optional<CutId> none;
+    EXPECT_TRUE(body.finish(blade.end(), none).changes.is_empty());
 }
 
 // In faces and nodes of the mesh, a hair beside them, and at the side of the body, which it parts.
@@ -251,10 +252,10 @@ TEST(FinishedCut, EndsWhereFacesOfTheMeshAre) {
                     return Polyline{{x, -1.0, height}, {x, 2.0, height}};
                 };
                 const SplitOptions options = SplitOptions{snap};
-                CutFront front;
+                std::optional<CutId> front;
                 for (const auto& surface : sweep(edge(-0.3), edge(stop), 1))
-                    body.cut(*surface, front, options, body.positions);
-                body.finish({edge(stop), {Vec3::UnitX(), Vec3::UnitX()}}, front, options);
+                    body.cut(surface, front, options);
+                body.finish({edge(stop), {Vec3::UnitX(), Vec3::UnitX()}}, front);
                 EXPECT_NEAR(projected_area(body, Vec3::UnitZ()), stop, 1e-8);
                 EXPECT_EQ(topology::components(body.mesh).count, stop > 0.9 ? 2 : 1);
             }

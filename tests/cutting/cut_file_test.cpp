@@ -74,9 +74,10 @@ TEST(CutFiles, KeepBodiesOfRandomPrograms) {
                 const RandomCut cut = random_cut(corners, random);
                 SCOPED_TRACE("cut " + std::to_string(i) + ": " + cut.description);
                 LoopFront front;
-                for (const auto& surface : cut.stroke) {
+                for (const StrokePart& part : cut.stroke) {
                     const auto rest = mesh.rest_positions();
-                    const Split done = split_cells(mesh, {mesh, rest, rest}, *surface, front, {});
+                    const Split done =
+                        split_cells(mesh, {mesh, rest, rest}, *part.surface, front, {}, {});
                     fragments.apply(mesh, done.changes);
                 }
                 const MeshData data = written(mesh, fragments);
@@ -140,7 +141,7 @@ TEST(CutFiles, KeepMassesAndForces) {
                 const Plane plane(point, normal);
                 LoopFront front;
                 const auto rest = mesh.rest_positions();
-                const Split done = split_cells(mesh, {mesh, rest, rest}, plane, front, {});
+                const Split done = split_cells(mesh, {mesh, rest, rest}, plane, front, {}, {});
                 model.apply(mesh, done.changes);
             }
             const MeshData file = written(mesh, model.fragments());

@@ -40,7 +40,7 @@ void choose_plane(RandomCut& cut, const Box& box, std::span<const Vec3> position
             cut.point = box.center() + 0.3 * box.sizes().cwiseProduct(random.vector(1.0));
             cut.description = "plane";
     }
-    cut.stroke.push_back(std::make_unique<Plane>(cut.point, cut.normal));
+    cut.stroke.emplace_back(std::make_unique<Plane>(cut.point, cut.normal));
 }
 
 void choose_blade(RandomCut& cut, const Box& box, Random& random) {
@@ -65,7 +65,7 @@ void choose_blade(RandomCut& cut, const Box& box, Random& random) {
     Polyline from = edge(-1.0);
     for (int i = 1; i <= num_steps; ++i) {
         Polyline to = edge(-1.0 + (end + 1.0) * i / num_steps);
-        cut.stroke.push_back(std::make_unique<SweptEdge>(from, to));
+        cut.stroke.emplace_back(from, to);
         std::vector<Vec3> motion;
         for (std::size_t k = 0; k < to.size(); ++k) motion.push_back(to[k] - from[k]);
         cut.end.emplace(to, motion);
@@ -85,7 +85,7 @@ void choose_branch(RandomCut& cut, const Box& box, Random& random) {
     const auto surface = sheet(centre, reach * u, reach * v, 12, [&](double s, double t) -> Vec3 {
         return wave * std::sin(s_waves * s + t_waves * t + phase) * normal;
     });
-    cut.stroke.push_back(std::make_unique<TriangleSurface>(surface));
+    cut.stroke.emplace_back(std::make_unique<TriangleSurface>(surface));
     cut.description = "sheet, " + std::to_string(reach / size) + " of the body's size";
 }
 

@@ -11,6 +11,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string_view>
 
 #include "cut_balance.h"
@@ -50,6 +51,7 @@ class Patient {
         if (std::equal(mesh_.rest_positions().begin(), mesh_.rest_positions().end(),
                        model_.positions().begin()))
             is_at_rest_ = true;
+        cutter_.emplace(mesh_, model_.mesh_positions());
     }
 
     std::string describe() const {
@@ -87,27 +89,22 @@ class Patient {
     }
 
     void carry_out(const RandomCut& cut) {
-        CutFront front;
-        for (const auto& surface : cut.stroke) {
-            const auto now = model_.mesh_positions();
-            const std::vector<Vec3> before(now.begin(), now.end());
+        std::optional<CutId> blade;
+        for (const StrokePart& part : cut.stroke) {
             if (!is_at_rest_) deform(model_, 0.02, size_, random_);
-            cut_and_follow(*surface, front, before);
+            cut_and_follow(part, blade);
         }
         if (!cut.end) return;
-        follow([&] {
-            const auto here = model_.mesh_positions();
-            return finish(mesh_, model_.fragments(), {mesh_, here, here}, *cut.end, front, options_,
-                          snap_history_);
-        });
-        EXPECT_TRUE(front.is_empty());
+        follow([&] { return cutter_->end_cut(*blade, mesh_, model_.fragments(), *cut.end); });
+        EXPECT_FALSE(cutter_->is_in_tissue(*blade));
+        cutter_->remove_cut(*blade);
     }
 
-    Split cut_and_follow(const CutSurface& surface, CutFront& front,
-                         const std::vector<Vec3>& positions_before) {
+    Split cut_and_follow(const StrokePart& part, std::optional<CutId>& blade) {
         return follow([&] {
-            return split(mesh_, {mesh_, positions_before, model_.mesh_positions()}, surface, front,
-                         options_, snap_history_);
+            if (part.from.empty()) return cutter_->split(mesh_, *part.surface, options_.snap);
+            if (!blade) blade = cutter_->begin_cut(options_.snap);
+            return cutter_->split(*blade, mesh_, part.from, part.to);
         });
     }
 
@@ -115,8 +112,10 @@ class Patient {
     template <class Edit>
     Split follow(Edit edit) {
         const Balance before(model_);
+        cutter_->follow_motion(mesh_, model_.mesh_positions());
         const Split done = edit();
         const physics::BodyEdit done_to_body = model_.apply(mesh_, done.changes);
+        cutter_->apply(mesh_, done.changes);
         if (!done.changes.is_empty()) check(before, done_to_body);
         has_joins_ |= done_to_body.physics.has_joins();
         return done;
@@ -157,10 +156,8 @@ class Patient {
 
     /// The same cut at the same place has nothing more to do.
     void repeat(const RandomCut& cut) {
-        CutFront front;
-        const auto now = model_.mesh_positions();
-        const std::vector<Vec3> still(now.begin(), now.end());
-        const Split again = cut_and_follow(*cut.stroke.front(), front, still);
+        std::optional<CutId> none;
+        const Split again = cut_and_follow(cut.stroke.front(), none);
         EXPECT_TRUE(again.changes.is_empty());
     }
 
@@ -171,7 +168,7 @@ class Patient {
     double rest_volume_, size_;
     double least_step_;  // that an element of the uncut body has alone, s
     SplitOptions options_;
-    SnapHistory snap_history_;
+    std::optional<Cutter> cutter_;
     bool is_at_rest_ = true;
     bool has_joins_ = false;  // so far
 };

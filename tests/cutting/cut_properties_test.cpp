@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <ostream>
 
 #include "cut_balance.h"
@@ -130,8 +131,8 @@ class Patient {
           first_mesh_(mesh_),
           snap_(program.snap / 100.0),
           is_at_rest_(program.deformation.is_none()) {
-        options_ = SplitOptions{snap_};
         deform(program.deformation);
+        cutter_.emplace(mesh_, model_.mesh_positions());
         for (const Vec3& x : model_.positions()) box_.extend(x);
         longest_edge_ = longest_edge(mesh_, model_.positions());
         first_forces_.assign(model_.elastic_forces().begin(), model_.elastic_forces().end());
@@ -139,16 +140,15 @@ class Patient {
     }
 
     void carry_out(const Cut& cut) {
-        CutFront front;
+        std::optional<CutId> blade;
         const Stroke stroke = stroke_of(cut);
-        for (const auto& surface : stroke) cut_and_check(*surface, front);
-        if (cut.kind == Kind::blade) finish_and_check(cut, front);
+        for (const StrokePart& part : stroke) cut_and_check(part, blade);
+        if (cut.kind == Kind::blade) finish_and_check(cut, *blade);
         if (cut.kind != Kind::plane) return;
         expect_parted(mesh_, model_.mesh_positions(), plane_of(cut),
                       how_far_off() * longest_edge_ + 1e-6 * box_.diagonal().norm());
         const std::size_t num_cuts = done_.size();
-        CutFront of_second;
-        cut_and_check(*stroke.front(), of_second);
+        cut_and_check(stroke.front(), blade);
         EXPECT_EQ(done_.size(), num_cuts) << "the same plane cuts a second time";
     }
 
@@ -173,7 +173,7 @@ class Patient {
         Stroke stroke;
         if (cut.kind == Kind::plane) {
             const auto [point, normal] = plane_of(cut);
-            stroke.push_back(std::make_unique<Plane>(point, normal));
+            stroke.emplace_back(std::make_unique<Plane>(point, normal));
         } else if (cut.kind == Kind::sphere) {
             const double radius = cut.size / 4.0 * box_.sizes().maxCoeff();
             stroke.push_back(
@@ -207,28 +207,29 @@ class Patient {
         model_.compute_forces(0.0);
     }
 
-    void cut_and_check(const CutSurface& surface, CutFront& front) {
-        edit_and_check([&](const TissueMotion& tissue) {
-            return split(mesh_, tissue, surface, front, options_, snap_history_);
+    void cut_and_check(const StrokePart& part, std::optional<CutId>& blade) {
+        edit_and_check([&] {
+            if (part.from.empty()) return cutter_->split(mesh_, *part.surface, snap_);
+            if (!blade) blade = cutter_->begin_cut(snap_);
+            return cutter_->split(*blade, mesh_, part.from, part.to);
         });
     }
 
-    void finish_and_check(const Cut& cut, CutFront& front) {
+    void finish_and_check(const Cut& cut, CutId blade) {
         const BladeEnd end(edge_of(cut, 1.0), {cut.places.size(), way_of(cut)});
-        edit_and_check([&](const TissueMotion& tissue) {
-            return finish(mesh_, model_.fragments(), tissue, end, front, options_, snap_history_);
-        });
-        EXPECT_TRUE(front.is_empty());
+        edit_and_check([&] { return cutter_->end_cut(blade, mesh_, model_.fragments(), end); });
+        EXPECT_FALSE(cutter_->is_in_tissue(blade));
+        cutter_->remove_cut(blade);
     }
 
-    /// edit(tissue) returns a Split.
+    /// edit() returns a Split.
     template <class Edit>
     void edit_and_check(Edit edit) {
         const Balance before(model_);
-        const auto now = model_.mesh_positions();
-        const std::vector<Vec3> still(now.begin(), now.end());
-        const ChangeSet changes = edit(TissueMotion{mesh_, still, still}).changes;
+        cutter_->follow_motion(mesh_, model_.mesh_positions());
+        const ChangeSet changes = edit().changes;
         physics::BodyEdit done = model_.apply(mesh_, changes);
+        cutter_->apply(mesh_, changes);
         if (changes.is_empty()) return;
         ASSERT_EQ(topology::validate(mesh_), std::vector<std::string>{});
         ASSERT_EQ(fragments::validate(model_.fragments(), mesh_), std::vector<std::string>{});
@@ -252,10 +253,9 @@ class Patient {
     std::vector<double> first_masses_;
     double snap_;
     bool is_at_rest_;
-    SplitOptions options_;
     Box box_;              // at first
     double longest_edge_;  // at first, m
-    SnapHistory snap_history_;
+    std::optional<Cutter> cutter_;
     std::vector<physics::BodyEdit> done_;
 };
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -96,6 +97,37 @@ TEST(LoopSplitter, MayBeWithdrawnAndComeBack) {
             EXPECT_FALSE(body.cutter.is_in_tissue(cut));
         },
         num_kinds_of_loops);
+}
+
+/// An upright edge goes into a cube and turns in it: a wedge comes off. Arms that are nearer to
+/// each other than a tenth of an edge can be taken for one path: a few bodies stay joined.
+TEST(LoopSplitter, PartsABodyAlongAPathThatTurnsInIt) {
+    int num_bodies = 0, num_wrong = 0;
+    for (const int num_steps : {1, 12})
+        for_bodies(20, 3, [&](Body& whole, Random& random) {
+            const double x = random.uniform(0.3, 0.7), depth = random.uniform(0.3, 0.8);
+            const std::array corners{Vec3(x + random.uniform(-0.25, 0.25), -0.1, 0.0),
+                                     Vec3(x, depth, 0.0),
+                                     Vec3(x + random.uniform(-0.25, 0.25), -0.1, 0.0)};
+            const double width = std::abs(corners[0].x() - corners[2].x()) * depth / (depth + 0.1);
+            if (width < 0.05) return;
+            const auto edge = [&](std::size_t arm, double share) {
+                const Vec3 at = corners[arm] + share * (corners[arm + 1] - corners[arm]);
+                return std::vector<Vec3>{at - Vec3::UnitZ(), at + 2.0 * Vec3::UnitZ()};
+            };
+            CutBody body(whole.data);
+            const CutId cut = body.cutter.begin_cut(default_snap);
+            for (const std::size_t arm : {0u, 1u})
+                for (int i = 0; i < num_steps; ++i)
+                    body.move(cut, edge(arm, 1.0 * i / num_steps),
+                              edge(arm, (i + 1.0) / num_steps));
+            const std::vector<double> volumes = body.rest_volumes();
+            const double rest = *std::ranges::max_element(volumes);
+            ++num_bodies;
+            num_wrong += volumes.size() < 2 || std::abs(1.0 - 0.5 * width * depth - rest) > 0.02;
+        });
+    EXPECT_GT(num_bodies, 0);
+    EXPECT_LE(num_wrong, num_bodies / 40);
 }
 
 TEST(LoopSplitter, StopsOnNodesEdgesAndFaces) {

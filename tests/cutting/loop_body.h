@@ -154,7 +154,7 @@ class Body {
           volume_before(sum(rest_volumes())) {}
 
     Split cut(const CutSurface& surface, LoopFront& front, std::span<SuspendedLoops> resting = {}) {
-        Split done = split_cells(mesh, {mesh, positions, positions}, surface, front, resting);
+        Split done = split_cells(mesh, {mesh, positions, positions}, surface, front, {}, resting);
         positions = followed(std::move(positions), done.changes);
         for (SuspendedLoops& blade : resting) blade.front.apply(mesh, done.changes);
         EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});

@@ -96,13 +96,14 @@ class Patient {
 
     void carry_out(const RandomCut& cut) {
         LoopFront front;
-        for (const auto& surface : cut.stroke) {
+        for (const StrokePart& part : cut.stroke) {
             const auto now = model_.mesh_positions();
             const std::vector<Vec3> positions_before(now.begin(), now.end());
             deform(model_, 0.02, size_, random_);
             const Balance before(model_);
-            const Split done = split_cells(
-                mesh_, {mesh_, positions_before, model_.mesh_positions()}, *surface, front, {});
+            const Split done =
+                split_cells(mesh_, {mesh_, positions_before, model_.mesh_positions()},
+                            *part.surface, front, {}, {});
             if (done.changes.is_empty()) continue;
             num_divided_ += done.changes.elements_added.size();
             edits_.push_back(model_.apply(mesh_, done.changes));

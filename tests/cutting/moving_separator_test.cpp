@@ -153,10 +153,10 @@ TEST(Separator, BladeThatRidesAlongOpensNothing) {
     // blade touches nodes and faces all the time.
     for (const auto kind : {topology::CellKind::tetrahedron, topology::CellKind::hexahedron}) {
         Body body(topology::box_mesh(kind, {0, 0, 0}, {4, 4, 4}, {4, 4, 4}));
-        const Edge edge = {{-1, 2, 2}, {1, 2, 2}, {2, 3, 2.25}, {9, 3, 2}};
+        const Polyline edge = {{-1, 2, 2}, {1, 2, 2}, {2, 3, 2.25}, {9, 3, 2}};
         body.step(edge, edge);
         for (const Vec3& wind : {Vec3(0, 0, 1), Vec3(-3, 0.5, 0.25), Vec3(1, 0, 0)}) {
-            Edge moved_edge = edge;
+            Polyline moved_edge = edge;
             for (Vec3& x : moved_edge) x += wind;
             auto moved = body.positions;
             for (Vec3& x : moved) x += wind;
@@ -184,7 +184,7 @@ TEST(Separator, ATurningBladePartsTheBody) {
             const double size = box.diagonal().norm();
             const Vec3 pivot = box.center() - Vec3(0, 0, 1.5 * size);
             const double radius = 1.5 * size + 0.05 * size;
-            const auto edge = [&](double s) -> Edge {
+            const auto edge = [&](double s) -> Polyline {
                 const double angle = std::numbers::pi * (s - 0.5);
                 const Vec3 arm(0, radius * std::sin(angle), radius * std::cos(angle));
                 return {pivot + arm - Vec3(2 * size, 0.1 * size, 0),

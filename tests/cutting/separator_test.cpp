@@ -122,7 +122,7 @@ TEST(Separator, PlanesThroughNodesAndCentresPartAsWell) {
                     const Vec3 v = normal.cross(u);
                     const Vec3 point = Vec3::Constant(n / 2) + Vec3(offset, 0, 0) +
                                        (normal.x() == 0.0 ? offset : 0.0) * Vec3(0, 1, -1);
-                    const auto edge = [&](double along) -> Edge {
+                    const auto edge = [&](double along) -> Polyline {
                         return {point - 32 * u + along * v, point + 32 * u + along * v};
                     };
                     std::vector<bool> above;
@@ -247,7 +247,7 @@ TEST(Separator, OpensASheetThatEndsAtTheBlade) {
             const auto box = body.box();
             const double size = box.diagonal().norm();
             const BladePlane plane(box.center() + random.vector(0.05 * size), random.vector(1));
-            const Edge last = plane.edge(2 * size, 0.0);
+            const Polyline last = plane.edge(2 * size, 0.0);
             body.step(plane.edge(2 * size, -size), last);
 
             std::map<std::pair<VertexId, VertexId>, std::vector<topology::FacePair>> at_edge;
@@ -344,8 +344,8 @@ TEST(Separator, ABentEdgePartsAlongItsShape) {
     for (const auto kind : {topology::CellKind::tetrahedron, topology::CellKind::hexahedron}) {
         Body body(topology::box_mesh(kind, {0, 0, 0}, {1, 1, 1}, {8, 3, 8}));
         const auto roof = [](double x) { return 0.61 - 0.73 * std::abs(x - 0.47); };
-        const auto edge = [&](double y) -> Edge {
-            Edge points;
+        const auto edge = [&](double y) -> Polyline {
+            Polyline points;
             for (const double x : {-2.0, 0.47, 3.0}) points.push_back({x, y, roof(x)});
             return points;
         };
@@ -373,7 +373,7 @@ TEST(Separator, AnEdgeFoldedOntoItselfOpensNothing) {
         const double size = box.diagonal().norm();
         const BladePlane plane(box.center(), {3, 1, 2});
         const auto folded = [&](double along) {
-            Edge edge = plane.edge(2 * size, along);
+            Polyline edge = plane.edge(2 * size, along);
             edge.push_back(edge.front());
             return edge;
         };

@@ -21,10 +21,15 @@ using topology::SurfaceData;
 
 namespace {
 
-std::array<Vec3, 4> corners_at(const Mesh& mesh, CellId e, std::span<const Vec3> positions) {
-    std::array<Vec3, 4> x;
-    for (std::size_t k = 0; k < 4; ++k) x[k] = positions[mesh.corners(e)[k].index()];
-    return x;
+/// Calls visit(x0, x1, x2, x3) for tetrahedra between the first corner of a cell and the triangles
+/// of its faces. The sum of their volumes, some of which are negative, is that of the cell.
+template <class Visit>
+void for_tetrahedra(const Mesh& mesh, CellId e, std::span<const Vec3> positions, Visit visit) {
+    const auto at = [&](VertexId n) -> const Vec3& { return positions[n.index()]; };
+    for (int f = 0; f < mesh.num_faces(e); ++f)
+        for (int p = 2; p < mesh.face_size({e, f}); ++p)
+            visit(at(mesh.corners(e)[0]), at(mesh.face_corner({e, f}, 0)),
+                  at(mesh.face_corner({e, f}, p - 1)), at(mesh.face_corner({e, f}, p)));
 }
 
 double volume_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -63,16 +68,18 @@ double clipped_volume(std::array<Vec3, 4> x, std::array<double, 4> heights) {
 
 }  // namespace
 
+StrokePart::StrokePart(const Polyline& before, const Polyline& after)
+    : surface(std::make_unique<SweptEdge>(before, after)), from(before), to(after) {}
+
 Stroke sweep(const Polyline& from, const Polyline& to, int num_steps) {
     const auto at = [&](int i) {
         Polyline edge;
         for (std::size_t k = 0; k < from.size(); ++k)
-            edge.push_back(from[k] + i * (to[k] - from[k]) / num_steps);
+            edge.emplace_back(from[k] + i * (to[k] - from[k]) / num_steps);
         return edge;
     };
     Stroke stroke;
-    for (int i = 0; i < num_steps; ++i)
-        stroke.push_back(std::make_unique<SweptEdge>(at(i), at(i + 1)));
+    for (int i = 0; i < num_steps; ++i) stroke.emplace_back(at(i), at(i + 1));
     return stroke;
 }
 
@@ -94,11 +101,14 @@ SplitBody::SplitBody(const topology::MeshData& data)
       positions(mesh.rest_positions().begin(), mesh.rest_positions().end()),
       first_surface(mesh) {}
 
-Split SplitBody::cut(const CutSurface& surface, CutFront& front, const SplitOptions& options,
-                     const std::vector<Vec3>& moved, std::span<SuspendedCut> resting) {
-    const Split done =
-        split(mesh, {mesh, positions, moved}, surface, front, options, snap_history, resting);
-    positions = followed(moved, done.changes);
+Cutter& SplitBody::cutter() {
+    if (!cutter_) cutter_.emplace(mesh, positions);
+    return *cutter_;
+}
+
+Split SplitBody::follow(Split done) {
+    positions = followed(std::move(positions), done.changes);
+    cutter().apply(mesh, done.changes);
     fragments.apply(mesh, done.changes);
     first_surface.apply(done.changes);
     EXPECT_EQ(positions.size(), mesh.node_capacity());
@@ -109,28 +119,33 @@ Split SplitBody::cut(const CutSurface& surface, CutFront& front, const SplitOpti
     return done;
 }
 
+Split SplitBody::cut(const StrokePart& part, std::optional<CutId>& blade,
+                     const SplitOptions& options, const std::vector<Vec3>& moved) {
+    cutter();
+    positions = moved;
+    cutter().follow_motion(mesh, moved);
+    if (part.from.empty()) return follow(cutter().split(mesh, *part.surface, options.snap));
+    if (!blade) blade = cutter().begin_cut(options.snap);
+    return follow(cutter().split(*blade, mesh, part.from, part.to));
+}
+
 Split SplitBody::cut(const CutSurface& surface, const SplitOptions& options) {
-    CutFront front;
-    return cut(surface, front, options, positions);
+    cutter().follow_motion(mesh, positions);
+    return follow(cutter().split(mesh, surface, options.snap));
 }
 
 std::vector<Split> SplitBody::cut(const Stroke& stroke, const SplitOptions& options) {
-    CutFront front;
+    std::optional<CutId> blade;
     std::vector<Split> parts;
-    for (const auto& surface : stroke) parts.push_back(cut(*surface, front, options, positions));
+    for (const StrokePart& part : stroke) parts.push_back(cut(part, blade, options));
+    if (blade) cutter().remove_cut(*blade);
     return parts;
 }
 
-Split SplitBody::finish(const BladeEnd& blade, CutFront& front, const SplitOptions& options) {
-    const std::vector<Vec3> here = positions;
-    const Split done =
-        cutting::finish(mesh, fragments, {mesh, here, here}, blade, front, options, snap_history);
-    positions = followed(here, done.changes);
-    fragments.apply(mesh, done.changes);
-    first_surface.apply(done.changes);
-    EXPECT_EQ(topology::validate(mesh), std::vector<std::string>{});
-    EXPECT_EQ(first_surface.faults(mesh), std::vector<FaceId>{});
-    return done;
+Split SplitBody::finish(const BladeEnd& end, std::optional<CutId>& blade) {
+    if (!blade) blade = cutter().begin_cut(default_snap);
+    cutter().follow_motion(mesh, positions);
+    return follow(cutter().end_cut(*blade, mesh, fragments, end));
 }
 
 Box SplitBody::box() const {
@@ -150,8 +165,10 @@ std::vector<Vec3> followed(std::vector<Vec3> positions, const topology::ChangeSe
 }
 
 double element_volume(const Mesh& mesh, CellId e, std::span<const Vec3> positions) {
-    const auto x = corners_at(mesh, e, positions);
-    return topology::tetrahedron_volume(x[0], x[1], x[2], x[3]);
+    double sum = 0.0;
+    for_tetrahedra(mesh, e, positions,
+                   [&](const auto&... x) { sum += topology::tetrahedron_volume(x...); });
+    return sum;
 }
 
 std::vector<double> piece_volumes(const Mesh& mesh) {
@@ -177,10 +194,13 @@ double volume_above(const Mesh& mesh, std::span<const Vec3> positions, const Vec
     double sum = 0.0;
     for (std::size_t i = 0; i < mesh.element_capacity(); ++i) {
         if (!mesh.is_alive(CellId(i))) continue;
-        const auto x = corners_at(mesh, CellId(i), positions);
-        std::array<double, 4> heights;
-        for (std::size_t k = 0; k < 4; ++k) heights[k] = normal.dot(x[k] - point);
-        sum += clipped_volume(x, heights);
+        for_tetrahedra(mesh, CellId(i), positions, [&](const auto&... corners) {
+            const std::array<Vec3, 4> x{corners...};
+            std::array<double, 4> heights;
+            for (std::size_t k = 0; k < 4; ++k) heights[k] = normal.dot(x[k] - point);
+            const double part = clipped_volume(x, heights);
+            sum += topology::tetrahedron_volume(corners...) < 0.0 ? -part : part;
+        });
     }
     return sum;
 }
@@ -195,13 +215,13 @@ double longest_edge(const Mesh& mesh, std::span<const Vec3> positions) {
 }
 
 std::vector<FacePair> cut_faces(const Mesh& mesh) {
-    std::map<std::array<std::array<double, 3>, 3>, FaceId> seen;
+    std::map<std::vector<std::array<double, 3>>, FaceId> seen;
     std::vector<FacePair> pairs;
     for (const FaceId f : topology::boundary_faces(mesh)) {
-        std::array<std::array<double, 3>, 3> key;
-        for (int p = 0; p < 3; ++p) {
+        std::vector<std::array<double, 3>> key;
+        for (int p = 0; p < mesh.face_size(f); ++p) {
             const Vec3& x = mesh.rest_position(mesh.face_corner(f, p));
-            key[static_cast<std::size_t>(p)] = {x.x(), x.y(), x.z()};
+            key.push_back({x.x(), x.y(), x.z()});
         }
         std::sort(key.begin(), key.end());
         const auto [place, is_new] = seen.try_emplace(key, f);
@@ -213,8 +233,8 @@ std::vector<FacePair> cut_faces(const Mesh& mesh) {
 NodesOfCut nodes_of_cut(const Mesh& mesh) {
     std::set<VertexId> parted, joined;
     for (const auto& [a, b] : cut_faces(mesh))
-        for (int p = 0; p < 3; ++p)
-            for (int q = 0; q < 3; ++q) {
+        for (int p = 0; p < mesh.face_size(a); ++p)
+            for (int q = 0; q < mesh.face_size(b); ++q) {
                 const VertexId m = mesh.face_corner(a, p), n = mesh.face_corner(b, q);
                 if (mesh.rest_position(m) != mesh.rest_position(n)) continue;
                 if (m == n) {
@@ -261,6 +281,7 @@ void expect_parted(const Mesh& mesh, std::span<const Vec3> positions, const Plan
     const auto num_pieces = static_cast<std::size_t>(pieces.count);
     std::vector<double> highest(num_pieces, 0.0), lowest(num_pieces, 0.0);
     for (std::size_t e = 0; e < mesh.element_capacity(); ++e) {
+        if (!mesh.is_alive(CellId(e))) continue;
         const auto piece = static_cast<std::size_t>(pieces.of_element[e]);
         for (const VertexId n : mesh.corners(CellId(e))) {
             const Vec3 from = positions[n.index()] - plane.point;

@@ -4,10 +4,12 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "incise/cutting/exact/splitter.h"
+#include "incise/cutting/cutter.h"
 #include "incise/topology/mesh.h"
 #include "incise/topology/mesh_data.h"
 #include "incise/topology/surface_data.h"
@@ -19,9 +21,18 @@ namespace incise::cutting {
 using test::box_surface;
 using test::icosphere;
 
-/// What one cut consists of: a surface, or those that a blade sweeps step by step.
-using Stroke = std::vector<std::unique_ptr<CutSurface>>;
 using Polyline = std::vector<Vec3>;
+/// A surface, or what a blade sweeps in a step.
+struct StrokePart {
+    template <class Surface>
+    StrokePart(std::unique_ptr<Surface> whole) : surface(std::move(whole)) {}
+    StrokePart(const Polyline& before, const Polyline& after);
+
+    std::unique_ptr<CutSurface> surface;
+    Polyline from, to;  ///< of a blade's edge; else empty
+};
+/// What one cut consists of.
+using Stroke = std::vector<StrokePart>;
 Stroke sweep(const Polyline& from, const Polyline& to, int num_steps);
 
 /// A mesh whose nodes are moved about, and split. Every cut is followed by the checks of a mesh.
@@ -29,25 +40,37 @@ class SplitBody {
   public:
     explicit SplitBody(const topology::MeshData& data);
 
-    /// The nodes go to `moved` (m, by node id) meanwhile.
-    Split cut(const CutSurface& surface, CutFront& front, const SplitOptions& options,
-              const std::vector<Vec3>& moved, std::span<SuspendedCut> resting = {});
-    /// A cut for itself through tissue that is still.
+    /// A blade goes on with its cut, which it begins if there is none. The nodes go to `moved` (m,
+    /// by node id) meanwhile.
+    Split cut(const StrokePart& part, std::optional<CutId>& blade, const SplitOptions& options,
+              const std::vector<Vec3>& moved);
+    Split cut(const StrokePart& part, std::optional<CutId>& blade, const SplitOptions& options) {
+        return cut(part, blade, options, std::vector<Vec3>(positions));
+    }
+    /// A surface at once, through tissue that is still.
     Split cut(const CutSurface& surface, const SplitOptions& options = {0.0});
 
-    /// What the parts of a stroke did, one after the other.
+    /// What the parts of a stroke did, one after the other. Its blade is taken away at last.
     std::vector<Split> cut(const Stroke& stroke, const SplitOptions& options = {0.0});
 
     /// Ends the cut of a blade in tissue that is still.
-    Split finish(const BladeEnd& blade, CutFront& front, const SplitOptions& options);
+    Split finish(const BladeEnd& end, std::optional<CutId>& blade);
+
+    /// Of the body as it is. It begins to know it at the first call.
+    Cutter& cutter();
+    void replace(Cutter cutter) { cutter_ = std::move(cutter); }
 
     Box box() const;  ///< of the present positions
 
     topology::Mesh mesh;
     fragments::FragmentMesh fragments;
     std::vector<Vec3> positions;  ///< by node id, m
-    SnapHistory snap_history;     // of all cuts so far
     test::FirstSurface first_surface;
+
+  private:
+    Split follow(Split done);
+
+    std::optional<Cutter> cutter_;
 };
 
 SplitReport sum(const std::vector<Split>& parts);
@@ -55,13 +78,13 @@ SplitReport sum(const std::vector<Split>& parts);
 /// Positions after an edit: new nodes are where its record says.
 std::vector<Vec3> followed(std::vector<Vec3> positions, const topology::ChangeSet& changes);
 
-/// Of a tetrahedron, m3.
+/// Of a cell, m3.
 double element_volume(const topology::Mesh& mesh, CellId e, std::span<const Vec3> positions);
 /// At rest, the largest first, m3.
 std::vector<double> piece_volumes(const topology::Mesh& mesh);
 double rest_volume(const topology::Mesh& mesh);
-/// Volume of a body of tetrahedra on the side of the plane to which the normal points; each is
-/// clipped for itself.
+/// Volume of a body on the side of the plane to which the normal points; each cell is clipped for
+/// itself.
 double volume_above(const topology::Mesh& mesh, std::span<const Vec3> positions, const Vec3& point,
                     const Vec3& normal);
 

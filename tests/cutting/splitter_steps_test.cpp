@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "blade_path.h"
 #include "incise/base/archive.h"
@@ -191,14 +192,17 @@ TEST(SplitByBlade, ResumesFromItsArchiveToTheSameCut) {
                 Random random(seed);
                 SplitBody body(family->data);
                 const BladePath path(body.box(), random);
-                CutFront front;
+                std::optional<CutId> blade;
                 for (const auto& part : sweep(path.from, path.to, 40)) {
-                    body.cut(*part, front, SplitOptions{default_snap}, body.positions);
+                    body.cut(part, blade, SplitOptions{default_snap});
                     if (!is_archived) continue;
                     ArchiveWriter ar;
-                    ar(front);
-                    front = ArchiveReader(ar.bytes()).read<CutFront>();
-                    EXPECT_TRUE(front.is_on(body.mesh));
+                    ar(body.cutter());
+                    Cutter read(body.mesh, body.positions);
+                    ArchiveReader reader(ar.bytes());
+                    reader(read);
+                    body.replace(std::move(read));
+                    EXPECT_TRUE(body.cutter().is_on(body.mesh));
                 }
                 return Faces(body);
             };

@@ -1,8 +1,6 @@
 // Splitting along planes in general position: against the volumes of plain geometry, and what an
 // edit has to say of itself.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/exact/splitter.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,11 +1,10 @@
 // Blades that are in the body at the same time, on ways that cross.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "incise/cutting/exact/suspended_cut.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "incise/cutting/surfaces/plane.h"
@@ -19,11 +18,11 @@ namespace {
 using test::Random;
 
 /// A straight edge that goes right through the body in a plane.
-struct Blade {
+struct BladeOnItsWay {
     Vec3 point, normal, along, way;
-    CutFront front;
+    std::optional<CutId> cut;
 
-    Blade(const Box& box, Random& random)
+    BladeOnItsWay(const Box& box, Random& random)
         : point(box.center() + random.vector(0.05 * box.diagonal().norm())),
           normal(random.vector(1.0).normalized()),
           along(1.5 * box.diagonal().norm() * normal.unitOrthogonal()),
@@ -34,13 +33,12 @@ struct Blade {
         const Vec3 middle = point + (2.0 * share - 1.0) * way;
         return {middle - along, middle + along};
     }
-    SuspendedCut resting(double share) { return {front, {edge(share), edge(share)}, true}; }
 };
 
 /// Bodies of 384 tetrahedra, and two blades whose planes cross.
 struct CrossingBlades {
     SplitBody body;
-    Blade a, b;
+    BladeOnItsWay a, b;
     SplitOptions options;
 
     CrossingBlades(std::uint64_t seed, Random& random, double snap)
@@ -51,16 +49,13 @@ struct CrossingBlades {
     bool are_parallel() const { return std::abs(a.normal.dot(b.normal)) > 0.9; }
 
     /// One of them goes on, the other one rests.
-    void move(Blade& blade, double from, double to, Blade& other, double rests_at) {
-        std::vector<SuspendedCut> resting{other.resting(rests_at)};
-        const Split done = body.cut(SweptEdge(blade.edge(from), blade.edge(to)), blade.front,
-                                    options, body.positions, resting);
-        other.front.apply(body.mesh, done.changes);
+    void move(BladeOnItsWay& blade, double from, double to) {
+        body.cut({blade.edge(from), blade.edge(to)}, blade.cut, options);
     }
 };
 
 /// How far the piece that reaches farthest to both sides of the blade's plane does so.
-double reach_across(const topology::Mesh& mesh, const Blade& blade) {
+double reach_across(const topology::Mesh& mesh, const BladeOnItsWay& blade) {
     const topology::Components components = topology::components(mesh);
     std::vector<double> above(static_cast<std::size_t>(components.count)), below(above.size());
     for (const CellId e : mesh.elements()) {
@@ -104,8 +99,8 @@ TEST(SuspendedCut, GoesOnThroughWhatAnotherCutsInTurns) {
     for_crossing_blades([](CrossingBlades& blades, int num_steps) {
         for (int i = 0; i < num_steps; ++i) {
             const double from = 1.0 * i / num_steps, to = (i + 1.0) / num_steps;
-            blades.move(blades.a, from, to, blades.b, from);
-            blades.move(blades.b, from, to, blades.a, to);
+            blades.move(blades.a, from, to);
+            blades.move(blades.b, from, to);
         }
     });
 }
@@ -114,12 +109,11 @@ TEST(SuspendedCut, GoesOnThroughWhatAnotherHasCutMeanwhile) {
     for_crossing_blades([](CrossingBlades& blades, int num_steps) {
         const double half = 0.5;
         for (int i = 0; i < num_steps; ++i)
-            blades.move(blades.a, half * i / num_steps, half * (i + 1) / num_steps, blades.b, 0.0);
+            blades.move(blades.a, half * i / num_steps, half * (i + 1) / num_steps);
         for (int i = 0; i < num_steps; ++i)
-            blades.move(blades.b, 1.0 * i / num_steps, (i + 1.0) / num_steps, blades.a, half);
+            blades.move(blades.b, 1.0 * i / num_steps, (i + 1.0) / num_steps);
         for (int i = 0; i < num_steps; ++i)
-            blades.move(blades.a, half + half * i / num_steps, half + half * (i + 1) / num_steps,
-                        blades.b, 1.0);
+            blades.move(blades.a, half + half * i / num_steps, half + half * (i + 1) / num_steps);
     });
 }
 
@@ -127,13 +121,9 @@ TEST(SuspendedCut, GoesOnThroughWhatAPlaneHasCut) {
     for_crossing_blades([](CrossingBlades& blades, int num_steps) {
         const double part = 0.47;
         for (int i = 0; i < num_steps; ++i)
-            blades.move(blades.a, part * i / num_steps, part * (i + 1) / num_steps, blades.b, 0.0);
-        std::vector<SuspendedCut> resting{blades.a.resting(part)};
-        CutFront front;
-        const Split done = blades.body.cut(Plane(blades.b.point, blades.b.normal), front,
-                                           blades.options, blades.body.positions, resting);
-        blades.a.front.apply(blades.body.mesh, done.changes);
-        blades.move(blades.a, part, 1.0, blades.b, 1.0);
+            blades.move(blades.a, part * i / num_steps, part * (i + 1) / num_steps);
+        blades.body.cut(Plane(blades.b.point, blades.b.normal), blades.options);
+        blades.move(blades.a, part, 1.0);
     });
 }
 

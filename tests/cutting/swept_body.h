@@ -20,7 +20,7 @@ namespace incise::cutting {
 using topology::ChangeSet;
 using topology::Mesh;
 
-using Edge = std::vector<Vec3>;
+using Polyline = std::vector<Vec3>;
 
 /// A mesh whose nodes are moved about, and cut.
 class Body {
@@ -30,7 +30,7 @@ class Body {
           positions(mesh.rest_positions().begin(), mesh.rest_positions().end()) {}
 
     /// The blade goes from `before` to `after` while the nodes go to `moved`.
-    ChangeSet step(const Edge& before, const Edge& after, const std::vector<Vec3>& moved) {
+    ChangeSet step(const Polyline& before, const Polyline& after, const std::vector<Vec3>& moved) {
         CutPlan plan;
         plan.faces_to_open = faces_to_open({mesh, positions, moved}, before, after);
         positions = moved;
@@ -57,12 +57,14 @@ class Body {
         opened.insert(changes.faces_opened.begin(), changes.faces_opened.end());
         return changes;
     }
-    ChangeSet step(const Edge& before, const Edge& after) { return step(before, after, positions); }
+    ChangeSet step(const Polyline& before, const Polyline& after) {
+        return step(before, after, positions);
+    }
 
     /// In `num_steps` equal steps, the tissue still.
-    void sweep(const Edge& from, const Edge& to, int num_steps) {
+    void sweep(const Polyline& from, const Polyline& to, int num_steps) {
         const auto at = [&](int i) {
-            Edge edge;
+            Polyline edge;
             for (std::size_t k = 0; k < from.size(); ++k)
                 edge.push_back(from[k] + i * (to[k] - from[k]) / num_steps);
             return edge;
@@ -114,7 +116,7 @@ struct BladePlane {
         v = normal.cross(u);
     }
     double height(const Vec3& x) const { return (x - point).dot(normal); }
-    Edge edge(double reach, double along) const {
+    Polyline edge(double reach, double along) const {
         return {point - reach * u + along * v, point + reach * u + along * v};
     }
 };

@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "incise/topology/geometry.h"
 #include "tests/sim/soft_world.h"
 
 namespace incise::sim {
@@ -142,7 +144,8 @@ inline std::vector<CellId> elements_where(const World& world, const Part& is_in)
     for (const CellId e : world.mesh().elements()) {
         Vec3 centre = Vec3::Zero();
         for (const VertexId n : world.mesh().corners(e)) centre += world.mesh().rest_position(n);
-        if (is_in(centre / 4.0)) elements.push_back(e);
+        if (is_in(centre / static_cast<double>(world.mesh().corners(e).size())))
+            elements.push_back(e);
     }
     return elements;
 }
@@ -155,14 +158,25 @@ struct Motion {
 };
 inline Motion mean_motion(const World& world, const std::vector<CellId>& elements, double density) {
     Motion sum;
+    const topology::Mesh& mesh = world.mesh();
     for (const CellId e : elements) {
-        const double mass = density * topology::rest_volume(world.mesh(), e);
-        sum.mass += mass;
-        for (const VertexId n : world.mesh().corners(e)) {
-            sum.displacement +=
-                0.25 * mass * (world.positions()[n.index()] - world.mesh().rest_position(n));
-            sum.velocity += 0.25 * mass * world.velocities()[n.index()];
-        }
+        // Tetrahedra between a corner and the triangles of the faces have its volume as their sum.
+        const VertexId apex = mesh.corners(e)[0];
+        for (int f = 0; f < mesh.num_faces(e); ++f)
+            for (int p = 2; p < mesh.face_size({e, f}); ++p) {
+                const std::array corners{apex, mesh.face_corner({e, f}, 0),
+                                         mesh.face_corner({e, f}, p - 1),
+                                         mesh.face_corner({e, f}, p)};
+                std::array<Vec3, 4> X;
+                for (std::size_t k = 0; k < 4; ++k) X[k] = mesh.rest_position(corners[k]);
+                const double mass = density * topology::tetrahedron_volume(X[0], X[1], X[2], X[3]);
+                sum.mass += mass;
+                for (std::size_t k = 0; k < 4; ++k) {
+                    const std::size_t n = corners[k].index();
+                    sum.displacement += 0.25 * mass * (world.positions()[n] - X[k]);
+                    sum.velocity += 0.25 * mass * world.velocities()[n];
+                }
+            }
     }
     sum.displacement /= sum.mass;
     sum.velocity /= sum.mass;
