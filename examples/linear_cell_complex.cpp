@@ -25,14 +25,17 @@ int main() {
         world.step_to(2e-4 * i, sim::StepInputs().move(knife, {Eigen::Quaterniond::Identity(),
                                                                {0, 0, 0.03 - 4e-4 * i}}));
 
-    // The body as it was cut: a volume for each cell, with its carrier.
+    // The body as it was cut: a volume for each cell. Polyhedra know of which cell they are a part.
     auto complex = topology::to_linear_cell_complex(
         world.mesh(), fragments::carriers_of(world.mesh(), world.model().fragments()));
-    std::cout << "volumes " << complex.attributes<3>().size() << ", vertices "
-              << complex.attributes<0>().size() << ", parts "
+    std::size_t num_polyhedra = 0;
+    for (auto cell = complex.attributes<3>().begin(); cell != complex.attributes<3>().end(); ++cell)
+        num_polyhedra += complex.info_of_attribute<3>(cell).carrier ? 1 : 0;
+    std::cout << "volumes " << complex.attributes<3>().size() << ", polyhedra " << num_polyhedra
+              << ", vertices " << complex.attributes<0>().size() << ", pieces "
               << complex.one_dart_per_cell<4>().size() << ", valid " << complex.is_valid() << '\n';
 
-    // Take the cells of one end away.
+    // Take cells of one end away.
     std::vector<decltype(complex)::Dart_handle> at_the_end;
     for (auto cell = complex.attributes<3>().begin(); cell != complex.attributes<3>().end(); ++cell)
         if (CGAL::to_double(complex.point(cell->dart()).x()) < 0.004)
@@ -45,6 +48,6 @@ int main() {
     def.mesh = topology::from_linear_cell_complex(read).mesh;
     sim::World rest(std::move(def));
     rest.step_to(5e-4);
-    std::cout << "elements left " << rest.mesh().num_elements() << ", parts "
-              << topology::components(rest.mesh()).count << '\n';
+    std::cout << "after " << rest.time() << " s: cells " << rest.mesh().num_elements()
+              << ", pieces " << topology::components(rest.mesh()).count << '\n';
 }

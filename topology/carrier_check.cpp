@@ -16,11 +16,9 @@ namespace incise::topology {
 namespace {
 
 /// Returns the text of the parts, behind it the remedy.
-std::string fault(auto&&... parts) {
+std::string with_remedy(const MeshData& data, auto&&... parts) {
     std::ostringstream text;
-    (text << ... << parts);
-    text << "; write the file again, or leave out its cell array 'carrier' to take each cell as an "
-            "element of its own";
+    (text << ... << parts) << "; " << data.words.mend_carriers;
     return text.str();
 }
 
@@ -42,7 +40,7 @@ class CarrierCheck {
             if (!(filled_[row] <= (1.0 + tolerance) * shapes_[row].volume))
                 found = fault("the cells of carrier ", row,
                               " have more volume than the carrier: ", filled_[row], " of ",
-                              shapes_[row].volume);
+                              shapes_[row].volume, first_part_of(row));
         for (std::size_t i = 0; i < shared_faces_.size() && found.empty(); ++i)
             found = fault_of_face(shared_faces_[i].a.cell, shared_faces_[i].b.cell);
         return found;
@@ -62,18 +60,30 @@ class CarrierCheck {
         std::vector<Extent> extents;
     };
 
+    std::string fault(auto&&... parts) const { return with_remedy(data_, parts...); }
+
+    /// Returns words that name the first cell of a carrier; empty if it has none.
+    std::string first_part_of(std::size_t row) const {
+        const auto& rows = carriers_.of_cell;
+        const auto it = std::ranges::find(rows, static_cast<std::int64_t>(row));
+        if (it == rows.end()) return "";
+        return "; its first part is " +
+               data_.cell_name(static_cast<std::size_t>(it - rows.begin()));
+    }
+
     std::string fault_of_corners() {
         for (std::size_t row = 0; row < carriers_.corners.size(); ++row) {
             shapes_.push_back(shape_of(carriers_.corners[row]));
             const double volume = shapes_.back().volume;
             if (!(volume > 0.0 && std::isfinite(volume)))
                 return fault("carrier ", row, " has the volume ", volume,
-                             ", which must be positive");
+                             ", which must be positive", first_part_of(row));
             const CarrierCorners& x = carriers_.corners[row];
             if (x.kind() == CellKind::tetrahedron) continue;
             if (const auto inverted = first_inverted_corner(x.kind(), x))
                 return fault("carrier ", row, " (", traits(x.kind()).name,
-                             ") is turned inside out at its corner ", *inverted);
+                             ") is turned inside out at its corner ", *inverted,
+                             first_part_of(row));
         }
         filled_.assign(carriers_.corners.size(), 0.0);
         region_of_.assign(carriers_.corners.size(), {false, 0});
@@ -139,7 +149,7 @@ class CarrierCheck {
     /// Returns why a polyhedron cannot be what a cut leaves of its carrier.
     std::string fault_of_polyhedron(std::size_t c, std::size_t row, double volume) const {
         const Shape& carrier = shapes_[row];
-        if (!(volume >= -least_volume * carrier.volume))
+        if (!(volume >= -least_volume_of_part * carrier.volume))
             return fault(data_.cell_name(c), " has the volume ", volume,
                          ", which must be positive: its faces run the wrong way round");
         for (int f = 0; f < faces_.num_faces(c); ++f)
@@ -206,15 +216,6 @@ class CarrierCheck {
 
     /// Far above the rounding of points on faces of carriers, and far below what a viewer shows.
     static constexpr double tolerance = 1e-6;
-    /// Cuts can leave polyhedra that are turned inside out, as a share of the carrier. A cut keeps
-    /// its nodes 2e-3 of an edge from the ends of the edge. So two of its faces that nearly touch
-    /// can pass through each other by this distance, over a section of the carrier at the most:
-    /// 2e-3 of its volume. Where a cut is curved, its faces are chords, which are off it by the
-    /// height of the arc. In 960 random planes, blades, waves and spheres through coarse, jittered
-    /// bodies that made 4e-3. What is more than ten times as much is no result of cuts, but faces
-    /// that run the wrong way round. Below that, the volumes of a carrier's cells still add up to
-    /// its own.
-    static constexpr double least_volume = 0.05;
     /// Faces on cuts are triangles. Others are parts of the faces of carriers, and as bent as
     /// these: up to 0.06 of the carrier in the same bodies, whose nodes are off by 0.15 of an edge.
     static constexpr double most_bend = 0.25;
@@ -233,7 +234,9 @@ class CarrierCheck {
 
 std::string fault_of_carriers(const MeshData& data, std::span<const SharedFace> shared_faces) {
     if (data.carriers.is_empty())
-        return data.carriers.corners.empty() ? "" : fault("the cells do not name their carriers");
+        return data.carriers.corners.empty()
+                   ? ""
+                   : with_remedy(data, "the cells do not name their carriers");
     return CarrierCheck(data, shared_faces).run();
 }
 

@@ -1,13 +1,17 @@
 // The way from CGAL's linear cell complex to a mesh.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <sstream>
 #include <unordered_map>
 #include <utility>
 
+#include "incise/base/disjoint_set.h"
 #include "incise/base/error.h"
+#include "incise/topology/carrier_check.h"
+#include "incise/topology/complex_volume.h"
 #include "incise/topology/geometry.h"
 #include "incise/topology/linear_cell_complex.h"
 #include "incise/topology/mesh_import.h"
@@ -19,44 +23,20 @@ namespace {
 using ConstHandle = LinearCellComplex::Dart_const_handle;
 using ConstVertex = LinearCellComplex::Attribute_const_handle<0>::type;
 
-/// The face and position of a dart in its cell. The dart starts at the corner that cell_kind.h
-/// lists there.
-struct DartPlace {
-    int face = -1, position = -1;
-};
-template <class Value>
-using ByPlace = std::array<std::array<Value, max_face_corners>, max_faces>;
+constexpr SourceWords words_of_complexes = {
+    .name = "complex",
+    .mend_faces = "mend the volume, or remove it with remove_cell<3>()",
+    .mend_polyhedron = "mend the volume, or remove it with remove_cell<3>()",
+    .mend_carriers =
+        "mend the volume or its ComplexCell::carrier, or remove the volume with remove_cell<3>()",
+    .name_carriers =
+        "no ComplexCell::carrier names it; set it, give to_linear_cell_complex() the "
+        "carriers of the body, or divide the volume into tetrahedra"};
 
-/// Returns for each dart of a kind of cell the dart along the same edge on the other face there.
-constexpr ByPlace<DartPlace> opposite_darts(const CellTraits& t) {
-    ByPlace<DartPlace> places{};
-    for (int f = 0; f < t.num_faces; ++f) {
-        const auto face = t.face(f);
-        for (std::size_t p = 0; p < face.size(); ++p) {
-            const int from = face[p], to = face[(p + 1) % face.size()];
-            for (int g = 0; g < t.num_faces; ++g) {
-                const auto other = t.face(g);
-                for (std::size_t q = 0; q < other.size(); ++q)
-                    if (other[q] == to && other[(q + 1) % other.size()] == from)
-                        places[static_cast<std::size_t>(f)][p] = {g, static_cast<int>(q)};
-            }
-        }
-    }
-    return places;
-}
-
-constexpr std::array<ByPlace<DartPlace>, num_cell_kinds> opposite_places = {
-    opposite_darts(cell_traits[0]), opposite_darts(cell_traits[1]), opposite_darts(cell_traits[2]),
-    opposite_darts(cell_traits[3])};
-
-auto& at(auto& by_place, int face, int position) {
-    return by_place[static_cast<std::size_t>(face)][static_cast<std::size_t>(position)];
-}
-
-/// Visits the places of all darts of a kind of cell: visit(face, position).
-void for_each_place(const CellTraits& t, auto visit) {
-    for (int f = 0; f < t.num_faces; ++f)
-        for (int p = 0; p < static_cast<int>(t.face(f).size()); ++p) visit(f, p);
+[[noreturn]] void refuse(const auto&... parts) {
+    std::ostringstream text;
+    (text << "linear cell complex: " << ... << parts);
+    throw InputError(text.str());
 }
 
 class ComplexReader {
@@ -64,29 +44,49 @@ class ComplexReader {
     explicit ComplexReader(const LinearCellComplex& complex) : complex_(complex) {}
 
     BuiltMesh run() {
+        data_.words = words_of_complexes;
         number_vertices();
-        find_cells();
-        for (const Cell& cell : cells_) add(cell);
-        for (std::size_t c = 0; c < cells_.size(); ++c) read_faces(c);
+        find_volumes();
+        for (std::size_t c = 0; c < volumes_.size(); ++c) find_faces(c);
+        orient();
+        for (std::size_t c = 0; c < volumes_.size(); ++c) add(c);
+        for (std::size_t c = 0; c < volumes_.size(); ++c) read_faces(c);
+        if (data_.carriers.corners.empty()) data_.carriers.of_cell.clear();
         data_.points_may_coincide = true;  // a cut leaves two vertices at one position
-        return import_mesh(data_, {.shared_faces = std::move(shared_),
-                                   .diagonals = std::move(diagonals_),
-                                   .joined_triangles = std::move(joined_triangles_),
-                                   .keeps_order = true});
+        try {
+            return import_mesh(data_, {.shared_faces = std::move(shared_),
+                                       .diagonals = std::move(diagonals_),
+                                       .joined_triangles = std::move(joined_triangles_),
+                                       .keeps_order = true});
+        } catch (const InputError& error) {
+            refuse(error.what());
+        }
     }
 
   private:
-    struct Cell {
-        CellKind kind{};
+    /// A volume of the complex, which becomes a cell.
+    struct Volume {
         ComplexCell info;
-        std::vector<ConstHandle> darts;
-        std::vector<std::int64_t> corners;
+        std::vector<ConstHandle> darts;               // in the order of the complex
+        std::vector<std::vector<ConstHandle>> faces;  // in the order of their first darts
+        bool is_mirrored = false;  // true if the faces run clockwise as seen from outside
+    };
+    /// Where a dart is.
+    struct DartPlace {
+        std::size_t order = 0;  // among all darts
+        std::size_t volume = 0;
+        std::size_t face = 0;  // number in Volume::faces
     };
 
     /// Returns where an id stands in the order: after all valid ones if it is invalid.
     template <class Id>
     static std::int64_t rank(Id id) {
         return id.is_valid() ? id.value : std::numeric_limits<std::int64_t>::max();
+    }
+    /// Returns the ids as numbers for messages; none if one is invalid.
+    static std::vector<std::int64_t> numbers_for_messages(std::vector<std::int64_t> ranks) {
+        if (!ranks.empty() && ranks.back() == rank(CellId())) ranks.clear();
+        return ranks;
     }
 
     void number_vertices() {
@@ -96,243 +96,311 @@ class ComplexReader {
         const auto id_of = [&](ConstVertex v) { return rank(complex_.info_of_attribute<0>(v).id); };
         std::stable_sort(vertices.begin(), vertices.end(),
                          [&](ConstVertex a, ConstVertex b) { return id_of(a) < id_of(b); });
+        std::vector<std::int64_t> ranks;
         for (const ConstVertex v : vertices) {
             const auto& x = complex_.point_of_vertex_attribute(v);
             numbers_[v] = std::ssize(data_.points);
             data_.points.emplace_back(x.x(), x.y(), x.z());
+            ranks.push_back(id_of(v));
         }
+        data_.source_points = numbers_for_messages(std::move(ranks));
     }
 
-    void find_cells() {
-        const auto& volumes = complex_.one_dart_per_cell<3>();
-        for (auto d = volumes.begin(); d != volumes.end(); ++d) {
-            Cell cell;
-            const auto& darts = complex_.darts_of_cell<3>(d);
-            for (auto it = darts.begin(); it != darts.end(); ++it) cell.darts.push_back(it);
-            if (complex_.attribute<3>(d) != nullptr) cell.info = complex_.info<3>(d);
-            read_corners(cell);
-            cells_.push_back(std::move(cell));
+    void find_volumes() {
+        std::vector<ConstHandle> all;
+        for (auto d = complex_.darts().begin(); d != complex_.darts().end(); ++d) {
+            if (complex_.attribute<0>(d) == nullptr) refuse("a dart has no vertex attribute");
+            places_[d].order = all.size();
+            all.push_back(d);
         }
-        std::stable_sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) {
-            return rank(a.info.id) < rank(b.info.id);
-        });
-        for (std::size_t c = 0; c < cells_.size(); ++c)
-            for (const ConstHandle d : cells_[c].darts) cell_of_[d] = c;
-    }
-
-    std::int64_t number_of(ConstHandle d) const {
-        const ConstVertex v = complex_.attribute<0>(d);
-        if (v == nullptr) throw InputError("linear cell complex: a dart has no vertex attribute");
-        return numbers_.at(v);
-    }
-
-    /// Returns the dart that follows in a face before it was divided; null if there is none.
-    ConstHandle next_of_whole(const Cell& cell, DartPlace at, ConstHandle d) const {
-        const ConstHandle next = complex_.beta<1>(d);
-        const int first = cell.info.diagonals.first_end(at.face);
-        if (first < 0 || (at.position + 1 - first) % 2 != 0) return next;
-        const ConstHandle other_half = complex_.beta<2>(next);
-        return complex_.is_free<2>(next) || complex_.is_free<1>(other_half)
-                   ? ConstHandle(nullptr)
-                   : complex_.beta<1>(other_half);
-    }
-
-    /// Gives the corners of a cell their places, with `first` as the first dart of the first face.
-    /// Returns false if the cell is of another kind.
-    bool place_corners(Cell& cell, ConstHandle first) const {
-        const CellTraits& t = traits(cell.kind);
-        ByPlace<ConstHandle> darts{};
-        at(darts, 0, 0) = first;
-        std::vector<std::pair<DartPlace, ConstHandle>> open{{{0, 0}, first}};
-        bool fits = true;
-        const auto reach = [&](int f, int p, ConstHandle d) {
-            ConstHandle& known = at(darts, f, p);
-            if (known == nullptr) open.push_back({{f, p}, d});
-            if (known == nullptr) known = d;
-            fits = fits && known == d;
-        };
-        while (fits && !open.empty()) {
-            const auto [place, d] = open.back();
-            open.pop_back();
-            const int size = static_cast<int>(t.face(place.face).size());
-            if (complex_.is_free<1>(d) || complex_.is_free<2>(d)) return false;
-            const ConstHandle next = next_of_whole(cell, place, d);
-            if (next == nullptr) return false;
-            reach(place.face, (place.position + 1) % size, next);
-            const DartPlace other = at(opposite_places[static_cast<std::size_t>(cell.kind)],
-                                       place.face, place.position);
-            reach(other.face, other.position, complex_.beta<2>(d));
+        std::vector<bool> is_known(all.size(), false);
+        const auto order_of = [&](ConstHandle d) { return places_.at(d).order; };
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (is_known[i]) continue;
+            Volume& volume = volumes_.emplace_back();
+            const auto& darts = complex_.darts_of_cell<3>(all[i]);
+            for (auto d = darts.begin(); d != darts.end(); ++d) volume.darts.push_back(d);
+            std::ranges::sort(volume.darts, {}, order_of);
+            for (const ConstHandle d : volume.darts) is_known[order_of(d)] = true;
+            if (complex_.attribute<3>(all[i]) != nullptr) volume.info = complex_.info<3>(all[i]);
         }
-        if (!fits) return false;
-        cell.corners.assign(static_cast<std::size_t>(t.num_corners), -1);
-        for_each_place(t, [&](int f, int p) {
-            std::int64_t& corner =
-                cell.corners[static_cast<std::size_t>(t.face(f)[static_cast<std::size_t>(p)])];
-            const std::int64_t number = number_of(at(darts, f, p));
-            fits = fits && (corner == -1 || corner == number);
-            corner = number;
-        });
-        return fits;
+        std::ranges::stable_sort(volumes_, {}, [](const Volume& v) { return rank(v.info.id); });
+        std::vector<std::int64_t> ranks;
+        for (std::size_t c = 0; c < volumes_.size(); ++c) {
+            ranks.push_back(rank(volumes_[c].info.id));
+            for (const ConstHandle d : volumes_[c].darts) places_.at(d).volume = c;
+        }
+        data_.source_cells = numbers_for_messages(std::move(ranks));
     }
 
-    void read_corners(Cell& cell) const {
-        const auto is_first = [&](ConstHandle d) {
-            const auto id = [&](ConstHandle dart) {
-                const ConstVertex v = complex_.attribute<0>(dart);
-                return v == nullptr ? VertexId() : complex_.info_of_attribute<0>(v).id;
-            };
-            return id(d).is_valid() && !complex_.is_free<1>(d) &&
-                   std::array{id(d), id(complex_.beta<1>(d))} == cell.info.first_edge;
-        };
-        std::stable_partition(cell.darts.begin(), cell.darts.end(), is_first);
-        for (int k = 0; k < num_cell_kinds; ++k) {
-            cell.kind = static_cast<CellKind>(k);
-            const Diagonals diagonals = cell.info.diagonals;
-            if (!diagonals.fits(cell.kind) ||
-                std::ssize(cell.darts) !=
-                    traits(cell.kind).num_face_corners() + 2 * diagonals.count())
-                continue;
-            for (const ConstHandle d : cell.darts)
-                if (place_corners(cell, d)) {
-                    orient(cell);
-                    return;
-                }
-        }
+    /// Returns the name of a volume before its kind is known.
+    std::string name_of(std::size_t c) const {
+        const CellId id = volumes_[c].info.id;
+        return "volume " + std::to_string(c) +
+               (id.is_valid() ? " (number " + std::to_string(id.value) + " in the complex)" : "");
+    }
+    std::string text_of(ConstHandle d) const {
+        const auto& x = complex_.point(d);
         std::ostringstream text;
-        text << "linear cell complex: a volume of " << cell.darts.size() << " darts";
-        if (cell.info.id.is_valid()) text << ", cell " << cell.info.id.value << ",";
-        text << " is no tetrahedron, hexahedron, wedge or pyramid";
-        throw InputError(text.str());
+        text << '(' << x.x() << ", " << x.y() << ", " << x.z() << ')';
+        return text.str();
     }
 
-    /// CGAL leaves it to the user whether faces run anticlockwise as seen from outside.
-    void orient(Cell& cell) const {
+    /// Lists the faces of a volume. Throws InputError if it is not closed.
+    void find_faces(std::size_t c) {
+        Volume& volume = volumes_[c];
+        const auto refuse_open = [&](const std::string& what) {
+            refuse(name_of(c), " is not closed: ", what,
+                   "; close it with sew<2>(), or remove it with remove_cell<3>()");
+        };
+        for (const ConstHandle d : volume.darts)
+            if (complex_.is_free<0>(d) || complex_.is_free<1>(d))
+                refuse_open("a face has an edge at " + text_of(d) + " that no other one follows");
+        for (const ConstHandle d : volume.darts)
+            if (complex_.is_free<2>(d))
+                refuse_open("the edge from " + text_of(d) + " to " + text_of(complex_.beta<1>(d)) +
+                            " has only one face");
+        constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+        for (const ConstHandle d : volume.darts) places_.at(d).face = none;
+        for (const ConstHandle first : volume.darts) {
+            if (places_.at(first).face != none) continue;
+            auto& face = volume.faces.emplace_back();
+            ConstHandle d = first;
+            do {
+                face.push_back(d);
+                places_.at(d).face = volume.faces.size() - 1;
+                d = complex_.beta<1>(d);
+            } while (d != first);
+        }
+    }
+
+    std::int64_t number_of(ConstHandle d) const { return numbers_.at(complex_.attribute<0>(d)); }
+    const Vec3& position_of(ConstHandle d) const {
+        return data_.points[static_cast<std::size_t>(number_of(d))];
+    }
+
+    /// CGAL leaves it to the user whether faces run anticlockwise as seen from outside. It is the
+    /// same for all volumes that are sewn.
+    void orient() {
+        DisjointSet sewn(volumes_.size());
+        for (std::size_t c = 0; c < volumes_.size(); ++c)
+            for (const auto& face : volumes_[c].faces)
+                if (!complex_.is_free<3>(face[0]))
+                    sewn.join(
+                        static_cast<std::int32_t>(c),
+                        static_cast<std::int32_t>(places_.at(complex_.beta<3>(face[0])).volume));
+        struct Sum {
+            double volume = 0.0, largest_carrier = 0.0;
+        };
+        std::vector<Sum> sums(volumes_.size());
+        double all = 0.0;
+        const auto sum_with = [&](std::size_t c) -> Sum& {
+            return sums[static_cast<std::size_t>(sewn.find(static_cast<std::int32_t>(c)))];
+        };
+        for (std::size_t c = 0; c < volumes_.size(); ++c) {
+            const double volume = volume_as_run(volumes_[c]);
+            Sum& sum = sum_with(c);
+            sum.volume += volume;
+            all += volume;
+            if (const auto& carrier = volumes_[c].info.carrier)
+                sum.largest_carrier = std::max(sum.largest_carrier,
+                                               std::abs(signed_volume(carrier->kind(), *carrier)));
+        }
+        for (std::size_t c = 0; c < volumes_.size(); ++c) {
+            const Sum& sum = sum_with(c);
+            // A crumb can be turned inside out by the cut itself: it turns as the other volumes do.
+            const bool is_crumb =
+                std::abs(sum.volume) <= least_volume_of_part * sum.largest_carrier;
+            volumes_[c].is_mirrored = (is_crumb ? all : sum.volume) < 0.0;
+        }
+    }
+
+    /// Returns the volume, m3, negative if the faces run clockwise as seen from outside.
+    double volume_as_run(const Volume& of) const {
+        const Vec3& o = position_of(of.faces[0][0]);
+        double volume = 0.0;
+        for (const auto& face : of.faces)
+            if (face.size() >= 3)
+                volume += flux_of_face(static_cast<int>(face.size()), [&](int p) -> Vec3 {
+                    return position_of(face[static_cast<std::size_t>(p)]) - o;
+                });
+        return volume;
+    }
+
+    /// Returns the points of a face, anticlockwise as seen from outside.
+    std::vector<std::int64_t> points_of(const Volume& volume, std::size_t face) const {
+        std::vector<std::int64_t> points;
+        for (const ConstHandle d : volume.faces[face]) points.push_back(number_of(d));
+        if (volume.is_mirrored) std::reverse(points.begin() + 1, points.end());
+        return points;
+    }
+
+    void add(std::size_t c) {
+        const Volume& volume = volumes_[c];
+        const ComplexCell& info = volume.info;
+        // Cuts leave polyhedra, whatever their shapes. Parts of tetrahedra can be tetrahedra.
+        std::optional<VolumeOfKind> known;
+        if (!info.carrier ||
+            (info.carrier->kind() == CellKind::tetrahedron && info.first_edge[0].is_valid()))
+            known = volume_of_kind(complex_, volume.darts, info);
+        if (info.carrier && known && known->kind != CellKind::tetrahedron) known.reset();
+        diagonals_.emplace_back();
+        if (known)
+            add_of_kind(c, *known);
+        else
+            add_polyhedron(volume);
+        add_carrier(c);
+    }
+
+    void add_polyhedron(const Volume& volume) {
+        std::vector<std::int64_t> faces{std::ssize(volume.faces)};
+        for (std::size_t f = 0; f < volume.faces.size(); ++f) {
+            const auto points = points_of(volume, f);
+            faces.push_back(std::ssize(points));
+            faces.insert(faces.end(), points.begin(), points.end());
+        }
+        data_.add_polyhedron(faces, volume.info.region);
+    }
+
+    void add_of_kind(std::size_t c, const VolumeOfKind& known) {
+        const Volume& volume = volumes_[c];
+        const CellTraits& t = traits(known.kind);
+        std::vector<std::int64_t> corners;
+        for (const ConstHandle d : known.corners) corners.push_back(number_of(d));
+        diagonals_.back() = volume.info.diagonals;
+        if (volume.is_mirrored) {
+            const auto before = corners;
+            for (std::size_t k = 0; k < before.size(); ++k)
+                corners[k] = before[static_cast<std::size_t>(t.mirrored[k])];
+            diagonals_.back() = with_ends_kept(volume.info.diagonals, t, before, corners);
+        }
+        data_.add_cell(known.kind, corners, volume.info.region);
         std::vector<Vec3> x;
-        for (const std::int64_t p : cell.corners)
-            x.push_back(data_.points[static_cast<std::size_t>(p)]);
-        if (!(signed_volume(cell.kind, x) < 0.0)) return;  // import says what is not finite
-        const auto before = cell.corners;
-        for (std::size_t k = 0; k < before.size(); ++k)
-            cell.corners[k] = before[static_cast<std::size_t>(traits(cell.kind).mirrored[k])];
-        // A diagonal keeps its ends, on a face that may have another number.
-        const CellTraits& t = traits(cell.kind);
-        const auto ends = [&](const std::vector<std::int64_t>& corners, int f, int first) {
+        for (const std::int64_t p : corners) x.push_back(data_.points[static_cast<std::size_t>(p)]);
+        if (const double size = signed_volume(known.kind, x); size < 0.0)
+            refuse(data_.cell_name(c), " is turned inside out: it has the volume ", size,
+                   ", and those that it is sewn to have positive ones; move its vertices, or "
+                   "remove it with remove_cell<3>()");
+    }
+
+    /// Returns diagonals between the same points, for corners in another order: a diagonal keeps
+    /// its ends, on a face that may have another number.
+    static Diagonals with_ends_kept(Diagonals diagonals, const CellTraits& t,
+                                    const std::vector<std::int64_t>& before,
+                                    const std::vector<std::int64_t>& corners) {
+        const auto ends = [&](const std::vector<std::int64_t>& of, int f, int first) {
             const auto at = [&](int p) {
-                return corners[static_cast<std::size_t>(t.face(f)[static_cast<std::size_t>(p)])];
+                return of[static_cast<std::size_t>(t.face(f)[static_cast<std::size_t>(p)])];
             };
             return std::pair(std::min(at(first), at(first + 2)),
                              std::max(at(first), at(first + 2)));
         };
         Diagonals turned;
         for (int f = 0; f < t.num_faces; ++f)
-            for (int g = 0; g < t.num_faces && cell.info.diagonals.divides(f); ++g)
+            for (int g = 0; g < t.num_faces && diagonals.divides(f); ++g)
                 for (int p = 0; p < 2 && t.face(g).size() == 4; ++p)
-                    if (ends(cell.corners, g, p) ==
-                        ends(before, f, cell.info.diagonals.first_end(f)))
+                    if (ends(corners, g, p) == ends(before, f, diagonals.first_end(f)))
                         turned.divide(g, p);
-        cell.info.diagonals = turned;
+        return turned;
     }
 
-    void add(const Cell& cell) {
-        data_.add_cell(cell.kind, cell.corners, cell.info.region);
+    void add_carrier(std::size_t c) {
         data_.carriers.of_cell.push_back(Carriers::whole);
-        if (!cell.info.carrier) return;
-        std::vector<double> key{static_cast<double>(cell.info.carrier->kind())};
-        for (const Vec3& x : *cell.info.carrier) key.insert(key.end(), x.begin(), x.end());
+        const auto& carrier = volumes_[c].info.carrier;
+        if (!carrier) return;
+        if (!carrier->diagonals.fits(carrier->kind()))
+            refuse("the carrier of ", data_.cell_name(c),
+                   " divides faces that its kind does not have; set its diagonals anew");
+        std::vector<double> key{static_cast<double>(carrier->kind()),
+                                static_cast<double>(carrier->diagonals.bits())};
+        for (const Vec3& x : *carrier) key.insert(key.end(), x.begin(), x.end());
         auto& rows = data_.carriers.corners;
         const auto [row, is_new] = rows_.try_emplace(key, std::ssize(rows));
-        if (is_new) rows.push_back(*cell.info.carrier);
+        if (is_new) rows.push_back(*carrier);
         data_.carriers.of_cell.back() = row->second;
     }
 
-    /// Returns the number of the face of a dart in its cell.
-    int face_of(const Cell& cell, ConstHandle d) const {
-        std::vector<std::int64_t> points;
-        ConstHandle walking = d;
-        do {
-            points.push_back(number_of(walking));
-            walking = complex_.beta<1>(walking);
-        } while (walking != d);
-        const CellTraits& t = traits(cell.kind);
+    bool is_polyhedron(std::size_t c) const { return data_.kinds[c] == CellKind::polyhedron; }
+
+    /// Returns the number in its cell of the face of a dart. A half of a divided face has the
+    /// number of that face.
+    SourceFace source_face(ConstHandle d) const {
+        const DartPlace& place = places_.at(d);
+        const std::size_t c = place.volume;
+        if (is_polyhedron(c)) return {c, static_cast<int>(place.face)};
+        const auto points = points_of(volumes_[c], place.face);
+        const CellTraits& t = traits(data_.kinds[c]);
         for (int f = 0; f < t.num_faces; ++f) {
             const auto face = t.face(f);
             const auto num_common = std::ranges::count_if(face, [&](int k) {
-                return std::ranges::find(points, cell.corners[static_cast<std::size_t>(k)]) !=
+                return std::ranges::find(points, data_.cell(c)[static_cast<std::size_t>(k)]) !=
                        points.end();
             });
-            // Both have the same corners, or it is a half of the face.
             if (num_common == std::ssize(points) &&
-                (face.size() == points.size() ||
-                 (cell.info.diagonals.divides(f) && points.size() == 3)))
-                return f;
+                (face.size() == points.size() || (diagonals_[c].divides(f) && points.size() == 3)))
+                return {c, f};
         }
-        throw InputError("linear cell complex: a face has other corners than its cell");
+        refuse(data_.cell_name(c), " has a face with other corners than the cell");
     }
 
+    /// Says which faces of a cell are joined, and which are on cuts.
     void read_faces(std::size_t c) {
-        const Cell& cell = cells_[c];
-        std::array<bool, max_faces> is_read{};
-        std::int32_t on_cuts = 0;
-        for (const ConstHandle d : cell.darts) {
-            const int f = face_of(cell, d);
-            if (cell.info.diagonals.divides(f)) {
-                if (complex_.is_free<3>(d) && complex_.attribute<2>(d) != nullptr &&
-                    complex_.info<2>(d).is_on_cut)
-                    on_cuts |= 1 << f;
-                continue;
-            }
-            if (std::exchange(is_read[static_cast<std::size_t>(f)], true)) continue;
+        for (const auto& darts : volumes_[c].faces) {
+            const ConstHandle d = darts[0];
+            const SourceFace here = source_face(d);
             if (complex_.is_free<3>(d)) {
                 if (complex_.attribute<2>(d) != nullptr && complex_.info<2>(d).is_on_cut)
-                    on_cuts |= 1 << f;
+                    data_.set_on_cut(c, here.face);
                 continue;
             }
             const ConstHandle far = complex_.beta<3>(d);
-            const std::size_t other = cell_of_.at(far);
-            const SourceFace here{c, f}, there{other, face_of(cells_[other], far)};
-            if (cells_[other].info.diagonals.divides(there.face))
-                join_triangle(there, here);
+            const SourceFace there = source_face(far);
+            if (diagonals_[c].divides(here.face)) continue;  // the other cell joins the two
+            const auto points = points_of(volumes_[c], places_.at(d).face);
+            const auto of_other = points_of(volumes_[there.cell], places_.at(far).face);
+            const int shift = shift_between(points, of_other);
+            if (shift < 0)
+                refuse("the sewn faces of ", data_.cell_name(c), " and ",
+                       data_.cell_name(there.cell),
+                       " have other vertices; take them apart with unsew<3>()");
+            if (diagonals_[there.cell].divides(there.face))
+                joined_triangles_.emplace_back(there, here);
             else if (here < there)
                 shared_.push_back({here, there, shift_of(here, there)});
         }
-        data_.cut_faces.push_back(on_cuts);
-        diagonals_.push_back(cell.info.diagonals);
     }
 
-    void join_triangle(SourceFace quad, SourceFace triangle) {
-        const Cell &of_quad = cells_[quad.cell], &of_triangle = cells_[triangle.cell];
-        for (const int k : traits(of_triangle.kind).face(triangle.face))
-            if (std::ranges::find(of_quad.corners,
-                                  of_triangle.corners[static_cast<std::size_t>(k)]) ==
-                of_quad.corners.end())
-                refuse_sewn_faces();
-        joined_triangles_.emplace_back(quad, triangle);
-    }
-    [[noreturn]] static void refuse_sewn_faces() {
-        throw InputError("linear cell complex: two faces that are sewn have other vertices");
-    }
-
-    /// Returns the position in a face of a cell of the point at position 0 of another face.
-    int shift_of(SourceFace a, SourceFace b) const {
-        const auto point = [&](SourceFace face, int position) {
-            const Cell& cell = cells_[face.cell];
-            return cell.corners[static_cast<std::size_t>(
-                traits(cell.kind).face(face.face)[static_cast<std::size_t>(position)])];
-        };
-        const int size = static_cast<int>(traits(cells_[a.cell].kind).face(a.face).size());
-        for (int shift = 0; shift < size; ++shift) {
+    /// Returns the position in `b` of the point at position 0 of `a`, if both have the same points
+    /// in opposite directions; else -1.
+    static int shift_between(const std::vector<std::int64_t>& a,
+                             const std::vector<std::int64_t>& b) {
+        if (a.size() != b.size()) return -1;
+        for (std::size_t shift = 0; shift < a.size(); ++shift) {
             bool fits = true;
-            for (int p = 0; p < size && fits; ++p)
-                fits = point(a, p) == point(b, (shift - p + size) % size);
-            if (fits) return shift;
+            for (std::size_t p = 0; p < a.size() && fits; ++p)
+                fits = a[p] == b[(shift + a.size() - p) % a.size()];
+            if (fits) return static_cast<int>(shift);
         }
-        refuse_sewn_faces();
+        return -1;
+    }
+
+    /// The same for two faces as the cells name them.
+    int shift_of(SourceFace a, SourceFace b) const {
+        const auto points = [&](SourceFace f) {
+            if (is_polyhedron(f.cell))
+                return points_of(volumes_[f.cell], static_cast<std::size_t>(f.face));
+            std::vector<std::int64_t> found;
+            for (const int k : traits(data_.kinds[f.cell]).face(f.face))
+                found.push_back(data_.cell(f.cell)[static_cast<std::size_t>(k)]);
+            return found;
+        };
+        return shift_between(points(a), points(b));
     }
 
     const LinearCellComplex& complex_;
     std::unordered_map<ConstVertex, std::int64_t> numbers_;
-    std::unordered_map<ConstHandle, std::size_t> cell_of_;
-    std::vector<Cell> cells_;
+    std::unordered_map<ConstHandle, DartPlace> places_;
+    std::vector<Volume> volumes_;  // in the order of the cells
     MeshData data_;
     std::map<std::vector<double>, std::int64_t> rows_;  // of carriers, by their corners
     std::vector<SharedFace> shared_;

@@ -42,16 +42,16 @@ class ComplexMaker {
         ComplexCell& info = complex_.info_of_attribute<3>(volume);
         info.id = e;
         info.region = mesh_.region(e);
-        info.first_edge = {mesh_.face_corner({e, 0}, 0), mesh_.face_corner({e, 0}, 1)};
-        if (const auto whole = mesh_.whole_cell(e)) {
+        if (!carriers_.is_empty())
+            if (const std::int64_t row = carriers_.of_cell[num_cells_]; row != Carriers::whole)
+                info.carrier = carriers_.corners[static_cast<std::size_t>(row)];
+        const auto whole = mesh_.whole_cell(e);
+        if (whole && !(info.carrier && mesh_.is_polyhedron(e))) {
             info.diagonals = whole->diagonals;
             const auto face = traits(whole->kind).face(0);
             for (std::size_t p = 0; p < 2; ++p)
                 info.first_edge[p] = whole->at[static_cast<std::size_t>(face[p])];
         }
-        if (!carriers_.is_empty())
-            if (const std::int64_t row = carriers_.of_cell[num_cells_]; row != Carriers::whole)
-                info.carrier = carriers_.corners[static_cast<std::size_t>(row)];
         ++num_cells_;
         auto& faces = cells_[e.index()];
         faces.resize(static_cast<std::size_t>(mesh_.num_faces(e)));
@@ -132,7 +132,10 @@ void write_cmap_attribute_node(boost::property_tree::ptree& node, const ComplexC
          << (cell.carrier ? 1 + static_cast<int>(cell.carrier->kind()) : 0);
     if (cell.carrier)
         for (const Vec3& x : *cell.carrier) text << ' ' << x[0] << ' ' << x[1] << ' ' << x[2];
-    if (!cell.diagonals.is_none()) text << ' ' << cell.diagonals.bits();
+    // Numbers at the end that are zero are left out.
+    const int of_carrier = cell.carrier ? cell.carrier->diagonals.bits() : 0;
+    if (!cell.diagonals.is_none() || of_carrier != 0) text << ' ' << cell.diagonals.bits();
+    if (of_carrier != 0) text << ' ' << of_carrier;
     node.add("v", text.str());
 }
 
@@ -162,6 +165,8 @@ void read_cmap_attribute_node(const boost::property_tree::ptree::value_type& nod
     }
     if (std::uint16_t bits = 0; is_read && read_numbers(text, bits))
         cell.diagonals = Diagonals::of_bits(bits);
+    if (std::uint16_t bits = 0; is_read && cell.carrier && read_numbers(text, bits))
+        cell.carrier->diagonals = Diagonals::of_bits(bits);
     if (!is_read) refuse_attribute(node.second.data());
 }
 

@@ -37,10 +37,12 @@ struct ComplexCell {
     CellId id;  ///< in the mesh that it was made from; invalid for a cell of your own
     int region = 0;
     /// The ends of the first dart of the first face, in the order of cell_kind.h: it gives all
-    /// corners their places. If the volume has no such dart, any fitting order is taken.
+    /// corners their places. If the volume has no such dart, any fitting order is taken. Invalid
+    /// for a polyhedron.
     std::array<VertexId, 2> first_edge = {};
     /// The cell that this one is a part of; none for a cell that is whole. Cells with the same
-    /// corners here are parts of one carrier. See Carriers.
+    /// corners here are parts of one carrier. See Carriers. A volume with a carrier becomes a
+    /// polyhedron, whatever its shape, but for a tetrahedron of a tetrahedron with a first edge.
     std::optional<CarrierCorners> carrier = {};
     /// Of a hexahedron, wedge or pyramid, the quadrilaterals that are two triangles here.
     Diagonals diagonals = {};
@@ -74,13 +76,16 @@ using LinearCellComplex = CGAL::Linear_cell_complex_for_combinatorial_map<
 LinearCellComplex to_linear_cell_complex(const Mesh& mesh, const Carriers& carriers = {});
 
 /// Builds a mesh from a linear cell complex. Cells are joined where volumes are sewn, and nowhere
-/// else. Ids are given in ascending order of the ids of the complex; cells and vertices without an
-/// id come last, in the order of their attributes. Volumes without attribute have region 0.
+/// else. Ids are given in ascending order of the ids of the complex; vertices without an id come
+/// last, in the order of their attributes, and cells in that of their first darts. Volumes without
+/// attribute have region 0. Volumes with a carrier become polyhedra, as cuts leave them, with faces
+/// in the order of their first darts. Others must be tetrahedra, hexahedra, wedges or pyramids.
 /// The mesh of to_linear_cell_complex() is the same mesh, but for ids of dead nodes and cells,
 /// labels and epoch.
-/// Throws InputError for a volume that is no tetrahedron, hexahedron, wedge or pyramid, unless its
-/// attribute says that only quadrilaterals of such a cell are divided. Also for a dart
-/// without vertex attribute, and as Mesh::build() does. Cost: O(n log n).
+/// Throws InputError, which names the volume and a remedy: for a polyhedron without a carrier,
+/// which has no forces; for a volume that is not closed, is no ball, is turned inside out, or
+/// cannot be a part of its carrier; for a dart without vertex attribute; and as Mesh::build() does.
+/// Cost: O(n log n).
 BuiltMesh from_linear_cell_complex(const LinearCellComplex& complex);
 
 /// Let CGAL write the attributes to files and read them.

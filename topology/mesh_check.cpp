@@ -91,8 +91,8 @@ std::string fault_of_polyhedra_alone(const MeshData& data) {
     return data.cell_name(first) +
            (count == 1 ? "" : " and " + std::to_string(count - 1) + " more") +
            " without a carrier: forces need the tetrahedron, hexahedron, wedge or pyramid that a "
-           "polyhedron is a part of, and only .vtu files of Incise name it; use such a file, or "
-           "divide the polyhedra into tetrahedra in the program that made the file";
+           "polyhedron is a part of, and " +
+           data.words.name_carriers;
 }
 
 /// Returns an error of the lists themselves; empty if all cells can be read.
@@ -160,7 +160,8 @@ std::string advice_of_collapsed(const MeshData& data, std::size_t c) {
     }
     const std::string name = traits(cell->kind).name;
     return ", so that it is a " + name + ": write it as a " + name + " of the points " + points +
-           (is_numbered_in_file ? " of the file" : "") + ", in VTK's order";
+           (is_numbered_in_file ? std::string(" of the ") + data.words.name : "") +
+           ", in VTK's order";
 }
 
 /// Returns false if it complains, or if a point of the cell is not finite.
@@ -274,7 +275,7 @@ std::string number_list(std::span<const FaceKey> faces, NumberOf number_of) {
 std::string cell_numbers(const MeshData& data, std::span<const FaceKey> faces) {
     std::string here = number_list(faces, [](const FaceKey& f) { return f.face.cell; });
     if (data.source_cells.empty()) return here;
-    return here + " (in the file " +
+    return here + " (in the " + data.words.name + " " +
            number_list(faces, [&](const FaceKey& f) { return data.source_cells[f.face.cell]; }) +
            ")";
 }

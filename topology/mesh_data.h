@@ -72,6 +72,22 @@ struct SourceFace {
     auto operator<=>(const SourceFace&) const = default;
 };
 
+/// What messages call the source of mesh data, and what they tell the user to do there.
+struct SourceWords {
+    const char* name = "file";
+    /// If lists are at fault: of the faces of polyhedra.
+    const char* mend_faces = "write the file again";
+    /// If the faces of a polyhedron bound no ball.
+    const char* mend_polyhedron = "write the file again, or remove the cell";
+    const char* mend_carriers =
+        "write the file again, or leave out its cell array 'carrier' to take each cell as an "
+        "element of its own";
+    /// If a polyhedron has no carrier.
+    const char* name_carriers =
+        "only .vtu files of Incise name it; use such a file, or divide the polyhedra into "
+        "tetrahedra in the program that made the file";
+};
+
 /// Cells over points, numbered from 0 in the order of the source. The contents may be invalid:
 /// Mesh::build checks them.
 struct MeshData {
@@ -96,6 +112,7 @@ struct MeshData {
     /// For messages: the number of each cell and of each point in the source. Empty where these are
     /// the numbers used here.
     std::vector<std::int64_t> source_cells, source_points;
+    SourceWords words = {};  ///< for messages, too
     /// By point, the point that replaced it in weld(): itself, or one with a lower number. Empty if
     /// no point was welded to another.
     std::vector<std::int64_t> welded_to;
@@ -193,7 +210,7 @@ struct MeshData {
     std::string cell_name(std::size_t c) const {
         std::string name = "cell " + std::to_string(c) + " (" + traits(kinds[c]).name;
         if (c < source_cells.size())
-            name += ", number " + std::to_string(source_cells[c]) + " in the file";
+            name += ", number " + std::to_string(source_cells[c]) + " in the " + words.name;
         return name + ")";
     }
 
@@ -201,7 +218,8 @@ struct MeshData {
     std::string point_name(std::size_t p) const {
         std::string name = "point " + std::to_string(p);
         if (p >= source_points.size()) return name;
-        return name + " (number " + std::to_string(source_points[p]) + " in the file)";
+        return name + " (number " + std::to_string(source_points[p]) + " in the " + words.name +
+               ")";
     }
 };
 

@@ -15,8 +15,6 @@ namespace {
 
 constexpr std::int64_t least_faces = 4, least_corners = 3;
 
-constexpr const char* write_again = "; write the file again";
-
 /// An edge as one face passes it.
 struct FaceEdge {
     std::int64_t from, to;
@@ -34,7 +32,7 @@ std::string fault_of_face_lists(const MeshData& data) {
         if (data.kinds[c] != CellKind::polyhedron) continue;
         const auto fault = [&](const auto&... parts) {
             std::ostringstream text;
-            ((text << data.cell_name(c) << ' ') << ... << parts) << write_again;
+            ((text << data.cell_name(c) << ' ') << ... << parts) << "; " << data.words.mend_faces;
             return text.str();
         };
         if (at == faces.size()) return fault("has no list of faces");
@@ -65,15 +63,15 @@ std::string fault_of_face_lists(const MeshData& data) {
     }
     if (at != faces.size())
         return "the faces of polyhedra are " + std::to_string(faces.size()) +
-               " numbers, and the polyhedra use " + std::to_string(at) + write_again;
+               " numbers, and the polyhedra use " + std::to_string(at) + "; " +
+               data.words.mend_faces;
     return "";
 }
 
 std::string fault_of_polyhedron(const MeshData& data, const SourceFaces& faces, std::size_t c) {
     const auto fault = [&](const auto&... parts) {
         std::ostringstream text;
-        ((text << data.cell_name(c) << ' ') << ... << parts)
-            << "; write the file again, or remove the cell";
+        ((text << data.cell_name(c) << ' ') << ... << parts) << "; " << data.words.mend_polyhedron;
         return text.str();
     };
     const auto name = [&](std::int64_t p) { return data.point_name(static_cast<std::size_t>(p)); };
