@@ -69,6 +69,14 @@ class Displacement {
     double farthest_ = 0.0;
 };
 
+/// Returns the volume of a cell at rest, m3, with all its quadrilaterals whole, as it is in a
+/// carrier.
+double volume_without_diagonals(const Mesh& mesh, const topology::WholeCell& cell) {
+    std::vector<Vec3> x;
+    for (const VertexId n : cell.corners()) x.push_back(mesh.rest_position(n));
+    return topology::signed_volume(cell.kind, x);
+}
+
 /// Returns the mean volume of the carriers at rest, m3, of which cells are left. It is the same, to
 /// the bit, for a body that was cut and read from a file: that has the carriers in the same order.
 double mean_carrier_volume(const Mesh& mesh) {
@@ -80,7 +88,8 @@ double mean_carrier_volume(const Mesh& mesh) {
         const std::int64_t row = e.index() < carriers.of_cell.size() ? carriers.of_cell[e.index()]
                                                                      : topology::Carriers::whole;
         if (row == topology::Carriers::whole) {
-            volume += topology::rest_volume(mesh, e);
+            const auto cell = mesh.whole_cell(e);
+            volume += cell ? volume_without_diagonals(mesh, *cell) : topology::rest_volume(mesh, e);
         } else {
             const auto i = static_cast<std::size_t>(row);
             if (is_counted[i]) continue;
