@@ -67,8 +67,9 @@ class ComplexReader {
     /// A volume of the complex, which becomes a cell.
     struct Volume {
         ComplexCell info;
-        std::vector<ConstHandle> darts;               // in the order of the complex
-        std::vector<std::vector<ConstHandle>> faces;  // in the order of their first darts
+        std::vector<ConstHandle> darts;                 // in the order of the complex
+        std::vector<ConstHandle> faces;                 // the first dart of each, in the same order
+        std::vector<std::vector<std::int64_t>> points;  // by face, its points
         bool is_mirrored = false;  // true if the faces run clockwise as seen from outside
     };
     /// Where a dart is.
@@ -164,31 +165,28 @@ class ComplexReader {
         for (const ConstHandle d : volume.darts) places_.at(d).face = none;
         for (const ConstHandle first : volume.darts) {
             if (places_.at(first).face != none) continue;
-            auto& face = volume.faces.emplace_back();
+            auto& points = volume.points.emplace_back();
             ConstHandle d = first;
             do {
-                face.push_back(d);
-                places_.at(d).face = volume.faces.size() - 1;
+                points.push_back(number_of(d));
+                places_.at(d).face = volume.faces.size();
                 d = complex_.beta<1>(d);
             } while (d != first);
+            volume.faces.push_back(first);
         }
     }
 
     std::int64_t number_of(ConstHandle d) const { return numbers_.at(complex_.attribute<0>(d)); }
-    const Vec3& position_of(ConstHandle d) const {
-        return data_.points[static_cast<std::size_t>(number_of(d))];
-    }
 
     /// CGAL leaves it to the user whether faces run anticlockwise as seen from outside. It is the
     /// same for all volumes that are sewn.
     void orient() {
         DisjointSet sewn(volumes_.size());
         for (std::size_t c = 0; c < volumes_.size(); ++c)
-            for (const auto& face : volumes_[c].faces)
-                if (!complex_.is_free<3>(face[0]))
-                    sewn.join(
-                        static_cast<std::int32_t>(c),
-                        static_cast<std::int32_t>(places_.at(complex_.beta<3>(face[0])).volume));
+            for (const ConstHandle d : volumes_[c].faces)
+                if (!complex_.is_free<3>(d))
+                    sewn.join(static_cast<std::int32_t>(c),
+                              static_cast<std::int32_t>(places_.at(complex_.beta<3>(d)).volume));
         struct Sum {
             double volume = 0.0, largest_carrier = 0.0;
         };
@@ -212,27 +210,23 @@ class ComplexReader {
             const bool is_crumb =
                 std::abs(sum.volume) <= least_volume_of_part * sum.largest_carrier;
             volumes_[c].is_mirrored = (is_crumb ? all : sum.volume) < 0.0;
+            if (volumes_[c].is_mirrored)
+                for (auto& points : volumes_[c].points)
+                    std::reverse(points.begin() + 1, points.end());
         }
     }
 
     /// Returns the volume, m3, negative if the faces run clockwise as seen from outside.
     double volume_as_run(const Volume& of) const {
-        const Vec3& o = position_of(of.faces[0][0]);
+        const auto at = [&](std::int64_t p) { return data_.points[static_cast<std::size_t>(p)]; };
+        const Vec3 o = at(of.points[0][0]);
         double volume = 0.0;
-        for (const auto& face : of.faces)
+        for (const auto& face : of.points)
             if (face.size() >= 3)
                 volume += flux_of_face(static_cast<int>(face.size()), [&](int p) -> Vec3 {
-                    return position_of(face[static_cast<std::size_t>(p)]) - o;
+                    return at(face[static_cast<std::size_t>(p)]) - o;
                 });
         return volume;
-    }
-
-    /// Returns the points of a face, anticlockwise as seen from outside.
-    std::vector<std::int64_t> points_of(const Volume& volume, std::size_t face) const {
-        std::vector<std::int64_t> points;
-        for (const ConstHandle d : volume.faces[face]) points.push_back(number_of(d));
-        if (volume.is_mirrored) std::reverse(points.begin() + 1, points.end());
-        return points;
     }
 
     void add(std::size_t c) {
@@ -254,8 +248,7 @@ class ComplexReader {
 
     void add_polyhedron(const Volume& volume) {
         std::vector<std::int64_t> faces{std::ssize(volume.faces)};
-        for (std::size_t f = 0; f < volume.faces.size(); ++f) {
-            const auto points = points_of(volume, f);
+        for (const auto& points : volume.points) {
             faces.push_back(std::ssize(points));
             faces.insert(faces.end(), points.begin(), points.end());
         }
@@ -328,7 +321,7 @@ class ComplexReader {
         const DartPlace& place = places_.at(d);
         const std::size_t c = place.volume;
         if (is_polyhedron(c)) return {c, static_cast<int>(place.face)};
-        const auto points = points_of(volumes_[c], place.face);
+        const auto& points = volumes_[c].points[place.face];
         const CellTraits& t = traits(data_.kinds[c]);
         for (int f = 0; f < t.num_faces; ++f) {
             const auto face = t.face(f);
@@ -345,8 +338,7 @@ class ComplexReader {
 
     /// Says which faces of a cell are joined, and which are on cuts.
     void read_faces(std::size_t c) {
-        for (const auto& darts : volumes_[c].faces) {
-            const ConstHandle d = darts[0];
+        for (const ConstHandle d : volumes_[c].faces) {
             const SourceFace here = source_face(d);
             if (complex_.is_free<3>(d)) {
                 if (complex_.attribute<2>(d) != nullptr && complex_.info<2>(d).is_on_cut)
@@ -356,10 +348,8 @@ class ComplexReader {
             const ConstHandle far = complex_.beta<3>(d);
             const SourceFace there = source_face(far);
             if (diagonals_[c].divides(here.face)) continue;  // the other cell joins the two
-            const auto points = points_of(volumes_[c], places_.at(d).face);
-            const auto of_other = points_of(volumes_[there.cell], places_.at(far).face);
-            const int shift = shift_between(points, of_other);
-            if (shift < 0)
+            if (shift_between(volumes_[c].points[places_.at(d).face],
+                              volumes_[there.cell].points[places_.at(far).face]) < 0)
                 refuse("the sewn faces of ", data_.cell_name(c), " and ",
                        data_.cell_name(there.cell),
                        " have other vertices; take them apart with unsew<3>()");
@@ -388,7 +378,7 @@ class ComplexReader {
     int shift_of(SourceFace a, SourceFace b) const {
         const auto points = [&](SourceFace f) {
             if (is_polyhedron(f.cell))
-                return points_of(volumes_[f.cell], static_cast<std::size_t>(f.face));
+                return volumes_[f.cell].points[static_cast<std::size_t>(f.face)];
             std::vector<std::int64_t> found;
             for (const int k : traits(data_.kinds[f.cell]).face(f.face))
                 found.push_back(data_.cell(f.cell)[static_cast<std::size_t>(k)]);
