@@ -28,8 +28,8 @@ class CellRows {
         return values_[static_cast<std::size_t>(kind)];
     }
 
-    /// Returns the array of the only kind, or a dict by the name of the kind. The arrays are
-    /// read-only if `are_frozen`.
+    /// Returns the array of the only kind, or a dict by the name of the kind. Polyhedra are always
+    /// in a dict, as their list is no array of corners. The arrays are read-only if `are_frozen`.
     py::object object(bool are_frozen) const {
         py::dict by_kind;
         py::object last;
@@ -45,7 +45,7 @@ class CellRows {
             last = array;
         }
         if (by_kind.size() == 1 && values_.back().empty()) return last;
-        if (by_kind.size() > 1) return by_kind;
+        if (!by_kind.empty()) return by_kind;
         return py::array_t<Number>(shape_of(0, 4));
     }
 

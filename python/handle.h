@@ -54,7 +54,7 @@ struct Handle {
         std::uint64_t version = std::numeric_limits<std::uint64_t>::max();
         py::object value;
     };
-    Kept surface, cells, regions;
+    Kept surface, cells, regions, elements, components;
 
   private:
     Rows rows_;

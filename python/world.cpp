@@ -74,6 +74,7 @@ void register_undo_point(py::module_& module) {
 
 void register_world(py::module_& module) {
     register_undo_point(module);
+    register_elements(module);
     register_physics(module);
     register_surface(module);
     register_view(module);
@@ -211,13 +212,29 @@ Raises InputError with all faults of scenario and mesh. What is unusual becomes 
             "cells", &cells,
             "The elements as rows of positions, in the order of VTK: int64, shape (M, 4) to (M, "
             "8),\n"
-            "a read-only copy. Of a mixed mesh a dict of such arrays by kind: tetrahedron,\n"
-            "hexahedron, wedge, pyramid. Polyhedra, which cuts leave, are in one list under the\n"
-            "key polyhedron: for each the number of its faces, then for each face the number of\n"
-            "its nodes and its nodes. The same object until the topology_version changes.")
+            "a read-only copy. Of several kinds a dict of such arrays by kind: tetrahedron,\n"
+            "hexahedron, wedge, pyramid. Cuts leave polyhedra, in bodies of tetrahedra too. They\n"
+            "are in one list under the key polyhedron: for each the number of its faces, then for\n"
+            "each face the number of its nodes and its nodes. The same object until the\n"
+            "topology_version changes. For what does not depend on kinds see elements.")
         .def_property_readonly(
             "regions", &regions,
             "The region of each element, int64, shape (M,), read-only; a dict if cells is one.")
+        .def_property_readonly(
+            "elements", &elements,
+            R"(Volumes, centres, regions and components of the elements of all kinds, an Elements.
+
+The same object until the topology_version changes.
+
+>>> world = incise.World(mesh={"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}},
+...                      materials=[{"density": 1000, "young": 1e5, "poisson": 0.4}])
+>>> float(round(world.elements.volumes.sum(), 9)), world.elements.centres.shape
+(1.0, (6, 3)))")
+        .def_property_readonly(
+            "components", &components,
+            "The connected component that each node belongs to: elements hang together through\n"
+            "faces. Numbers from 0 on, each of them there: int64, shape (N,), read-only. The same\n"
+            "object until the topology_version changes.")
         .def_property_readonly(
             "stress", &stress,
             "The Cauchy stress in each element, Pa: float64, shape (M, 3, 3), a copy; a dict if\n"

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "incise/cutting/surfaces/tissue_motion.h"
 #include "incise/python/cell_arrays.h"
 
 namespace incise::python {
@@ -22,6 +23,12 @@ py::object kept(const World& world, Handle::Kept& kept, Make make_anew) {
     }
     return kept.value;
 }
+
+struct Elements {
+    py::array_t<double> volumes, centres;
+    py::array_t<std::int64_t> regions, components;
+    std::uint64_t version;
+};
 
 struct Surface {
     py::array_t<std::int64_t> vertices, triangles, regions;
@@ -172,6 +179,49 @@ py::object regions(const World& world) {
     });
 }
 
+py::object components(const World& world) {
+    driver_of(world);
+    return kept(world, world->components, [&] {
+        const topology::Mesh& mesh = world->driver.world().mesh();
+        const topology::Components components = topology::components(mesh);
+        py::array_t<std::int64_t> array(static_cast<py::ssize_t>(mesh.num_nodes()));
+        std::int64_t* out = array.mutable_data();
+        // The elements at a node hang together through faces there: all are in one component.
+        for (const VertexId n : mesh.nodes())
+            *out++ = components.of_element[mesh.incident_element(n).index()];
+        return frozen(array);
+    });
+}
+
+py::object elements(const World& world) {
+    driver_of(world);
+    return kept(world, world->elements, [&] {
+        const topology::Mesh& mesh = world->driver.world().mesh();
+        const topology::Components components = topology::components(mesh);
+        const auto size = static_cast<py::ssize_t>(mesh.num_elements());
+        Elements made{py::array_t<double>(size), py::array_t<double>({size, py::ssize_t{3}}),
+                      py::array_t<std::int64_t>(size), py::array_t<std::int64_t>(size),
+                      world->driver.topology_version()};
+        std::array<std::vector<CellId>, topology::num_cell_kinds + 1> by_kind;
+        for (const CellId e : mesh.elements())
+            by_kind[static_cast<std::size_t>(kind_in_arrays(mesh, e))].push_back(e);
+        py::ssize_t row = 0;
+        for (const std::vector<CellId>& of_kind : by_kind)
+            for (const CellId e : of_kind) {
+                const Vec3 centre = cutting::TissueMotion::centre(mesh, e, mesh.rest_positions());
+                for (int c = 0; c < 3; ++c) made.centres.mutable_at(row, c) = centre[c];
+                made.volumes.mutable_at(row) = topology::rest_volume(mesh, e);
+                made.regions.mutable_at(row) = mesh.region(e);
+                made.components.mutable_at(row++) = components.of_element[e.index()];
+            }
+        frozen(made.volumes);
+        frozen(made.centres);
+        frozen(made.regions);
+        frozen(made.components);
+        return py::cast(std::move(made));
+    });
+}
+
 py::object surface(const World& world) {
     driver_of(world);
     return kept(world, world->surface, [&] {
@@ -278,6 +328,29 @@ py::object physics(const World& world) {
 py::object view(const World& world) {
     driver_of(world);
     return py::cast(std::make_shared<View>(world));
+}
+
+void register_elements(py::module_& module) {
+    py::class_<Elements, std::shared_ptr<Elements>> type(
+        module, "Elements",
+        R"(The elements of a body, one row each, whatever their kinds: see World.elements.
+
+Rows are counted through the arrays of World.cells: if that is a dict, row for row as in
+numpy.concatenate(list(world.volume_ratio.values())). The arrays are read-only copies: they are
+valid for ever, and belong to one topology_version.)");
+    type.attr("__module__") = "incise";
+    forbid_copies(type, "copy its arrays");
+    type.def_property_readonly("volumes", held(&Elements::volumes),
+                               "The volume of each element at rest, m3. Shape (M,).")
+        .def_property_readonly("centres", held(&Elements::centres),
+                               "The mean of the corners of each element at rest, m. Shape (M, 3).")
+        .def_property_readonly("regions", held(&Elements::regions),
+                               "The region of each element, int64. Shape (M,).")
+        .def_property_readonly(
+            "components", held(&Elements::components),
+            "The connected component of each element, numbered as in World.components. Shape (M,).")
+        .def_property_readonly("version", held(&Elements::version),
+                               "The topology_version that the arrays are for.");
 }
 
 void register_surface(py::module_& module) {

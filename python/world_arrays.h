@@ -19,9 +19,11 @@ py::array_t<double> contact_forces(const World& world);
 py::array_t<std::int64_t> node_ids(const World& world);
 
 /// Return objects that are made anew after edits only: arrays, or dicts of them by kind of element;
-/// an incise.Surface.
+/// the connected component of each node, shape (N,); an incise.Elements; an incise.Surface.
 py::object cells(const World& world);
 py::object regions(const World& world);
+py::object components(const World& world);
+py::object elements(const World& world);
 py::object surface(const World& world);
 
 /// Returns the Cauchy stress of each element, Pa, shape (M, 3, 3), and its volume over that at
@@ -33,6 +35,7 @@ py::object physics(const World& world);
 /// Returns an incise.View.
 py::object view(const World& world);
 
+void register_elements(py::module_& module);
 void register_physics(py::module_& module);
 void register_surface(py::module_& module);
 void register_view(py::module_& module);

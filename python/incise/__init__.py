@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 from ._incise import (
     Constraint,
     CutResult,
+    Elements,
     Error,
     InputError,
     Load,
@@ -62,6 +63,7 @@ class InciseWarning(UserWarning):
 __all__ = [
     "Constraint",
     "CutResult",
+    "Elements",
     "Error",
     "InciseWarning",
     "InputError",

@@ -40,8 +40,8 @@ class Copies(unittest.TestCase):
             "box": {"min": [0, 0, 0.04], "max": [0.12, 0.04, 0.04]}}}])
         knife = body.add_tool("knife", support.BLADE)
         mesh = incise.Mesh.box([1, 1, 1], [1, 1, 1])
-        things = [body, mesh, knife, body.step(), body.surface, body.physics, body.view(),
-                  body.undo_point(), knife.contacts,
+        things = [body, mesh, knife, body.step(), body.elements, body.surface, body.physics,
+                  body.view(), body.undo_point(), knife.contacts,
                   body.constraints["clamp"], body.loads["push"],
                   incise.cut(mesh, planes=[([0.4, 0, 0], [1, 0, 0])])]
         classes = {kind for kind in vars(incise).values()

@@ -154,8 +154,8 @@ def picture():
         source.choice(["rgb", "depth", ("rgb", "segmentation"), thing()]))
 def arrays():
     body = world()
-    for name in ("positions", "velocities", "masses", "cells", "regions", "surface", "node_ids",
-                 "contact_forces", "rest_positions"):
+    for name in ("positions", "velocities", "masses", "cells", "regions", "elements", "components",
+                 "surface", "node_ids", "contact_forces", "rest_positions"):
         kept.append(getattr(body, name))
 def meshes():
     block = incise.Mesh.box([0.1, 0.1, 0.1], [2, 2, source.randrange(3)])

@@ -13,8 +13,8 @@ import incise
 
 # What stubs of pybind11 cannot say: its metaclass, and that a class cannot be made by hand.
 ALLOWED = r"""
-incise\._incise\.(Constraint|CutResult|Load|Mesh|Physics|Pose|StepReport|Surface|Tool|ToolContacts|UndoPoint|View|World)
-incise\._incise\.(Constraint|CutResult|Load|Physics|StepReport|Surface|Tool|ToolContacts|UndoPoint|View)\.__init__
+incise\._incise\.(Constraint|CutResult|Elements|Load|Mesh|Physics|Pose|StepReport|Surface|Tool|ToolContacts|UndoPoint|View|World)
+incise\._incise\.(Constraint|CutResult|Elements|Load|Physics|StepReport|Surface|Tool|ToolContacts|UndoPoint|View)\.__init__
 """
 USE = """
 import incise

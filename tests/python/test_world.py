@@ -4,11 +4,39 @@ import pathlib
 import tempfile
 import unittest
 import warnings
+from typing import Any
 
 import numpy as np
 
 import incise
 import support
+
+
+FACES = {
+    "tetrahedron": [[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1]],
+    "hexahedron": [[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1],
+                   [4, 5, 6, 7]],
+    "pyramid": [[0, 3, 2, 1], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]}
+
+
+def in_a_row(arrays: Any) -> np.ndarray:
+    """Return what a body says of its elements, a dict by kind in a mixed mesh, as one array."""
+    return np.concatenate(list(arrays.values())) if isinstance(arrays, dict) else arrays
+
+
+def faces_of(cells: Any) -> list[list[list[int]]]:
+    """Return the faces of each cell, as lists of rows, in the order of the arrays of cells."""
+    if not isinstance(cells, dict):
+        cells = {"tetrahedron" if cells.shape[1] == 4 else "hexahedron": cells}
+    found = []
+    for kind, values in cells.items():
+        if kind == "polyhedron":
+            numbers = iter(values.tolist())
+            found += [[[next(numbers) for _ in range(next(numbers))] for _ in range(num_faces)]
+                      for num_faces in numbers]
+        else:
+            found += [[[row[i] for i in face] for face in FACES[kind]] for row in values.tolist()]
+    return found
 
 
 class Arrays(unittest.TestCase):
@@ -125,8 +153,9 @@ class Arrays(unittest.TestCase):
                     rtol=0, atol=1e-12 * np.linalg.norm(momentum))
                 self.assertAlmostEqual(energy, ledger["kinetic_energy"], delta=1e-12 * energy)
                 self.assertAlmostEqual(nodes.masses.sum(), ledger["mass"], delta=1e-12)
-                self.assertEqual(nodes.fragments.shape, (body.num_cells,))
-                self.assertEqual(set(nodes.fragments), set(range(len(nodes.cells))))
+                fragments = in_a_row(nodes.fragments)
+                self.assertEqual(fragments.shape, (body.num_cells,))
+                self.assertEqual(set(fragments), set(range(len(nodes.cells))))
                 self.assertEqual(set(nodes.cells.ravel()), set(range(len(nodes.masses))))
             self.assertGreater(body.num_cells, len(nodes.cells))
             with self.assertRaises(ValueError):
@@ -140,10 +169,83 @@ class Arrays(unittest.TestCase):
         whole = nodes.rest_positions[nodes.cells]
         edges = whole[:, 1:] - whole[:, :1]
         carried = nodes.volume_shares * np.abs(np.linalg.det(edges)) / 6
-        material = body.rest_positions[body.cells]
-        volumes = np.abs(np.linalg.det(material[:, 1:] - material[:, :1])) / 6
-        np.testing.assert_allclose(carried, np.bincount(nodes.fragments, volumes), rtol=1e-9)
+        volumes = np.bincount(in_a_row(nodes.fragments), body.elements.volumes)
+        np.testing.assert_allclose(carried, volumes, rtol=1e-9)
         self.assertTrue((nodes.volume_shares < 1.0).any())
+
+    def test_elements_are_in_the_order_of_cells_of_all_kinds(self) -> None:
+        brick = incise.Mesh.box([0.12, 0.04, 0.04], [1, 1, 1], "hex")
+        roof = incise.Mesh(np.vstack([brick.points, [[0.06, 0.02, 0.06]]]),
+                           {"hexahedron": brick.cells, "pyramid": [[4, 5, 7, 6, 8]]},
+                           regions={"hexahedron": [1], "pyramid": [2]})
+        for name, mesh, cut_at in (("tetrahedra", support.box(), 0.0713),
+                                   ("hexahedra", support.box(element="hex"), 0.0713),
+                                   ("two kinds", roof, 0.0713), ("a long way off", roof, 0.2)):
+            with self.subTest(name):
+                body = support.world(mesh=mesh)
+                first = body.elements
+                self.assertIs(body.elements, first)
+                support.cut_through(body, cut_at)
+                elements, rest = body.elements, body.rest_positions
+                self.assertEqual(elements.version, body.topology_version)
+                self.assertEqual("polyhedron" in body.cells, cut_at < 0.12)
+                np.testing.assert_array_equal(elements.regions, in_a_row(body.regions))
+                self.assertEqual(len(elements.regions), body.num_cells)
+                for faces, centre, volume in zip(faces_of(body.cells), elements.centres,
+                                                 elements.volumes):
+                    corners = np.unique(np.concatenate(faces))
+                    np.testing.assert_allclose(rest[corners].mean(axis=0), centre, rtol=1e-12)
+                    # The sum of the tetrahedra between the origin and triangles round each face.
+                    sum_of_parts = 0.0
+                    for face in faces:
+                        x = rest[face]
+                        sum_of_parts += np.cross(x, np.roll(x, -1, axis=0)).sum(
+                            axis=0) @ x.mean(axis=0) / 6
+                    self.assertAlmostEqual(sum_of_parts, volume, delta=1e-12 * volume + 1e-18)
+                with self.assertRaises(ValueError):
+                    elements.volumes[0] = 1.0
+
+    def test_components_are_those_of_the_ledger(self) -> None:
+        burr = {"kind": "carver", "shape": {"box": {"size": [0.022, 0.1, 0.1]}}}
+        for mesh in (support.box(), support.box(element="hex")):
+            body = support.world(mesh=mesh)
+            self.assertFalse(body.components.any() or body.elements.components.any())
+            for change in (lambda: support.cut_through(body, 0.0913),
+                           lambda: support.cut_through(body, 0.0713),
+                           lambda: body.add_tool("burr", burr, incise.Pose([0.03, 0.02, 0.02]))):
+                change()
+                body.step()
+                components = body.components
+                self.assertIs(body.components, components)
+                self.assertEqual(components.shape, (body.num_nodes,))
+                for faces, component in zip(faces_of(body.cells), body.elements.components):
+                    self.assertEqual(set(components[np.concatenate(faces)]), {component})
+                self.assertEqual(set(components), set(range(int(body.ledger()["components"]))))
+                # They are ranges of x here.
+                x = body.rest_positions[:, 0]
+                ends = sorted((x[components == c].min(), x[components == c].max())
+                              for c in set(components))
+                for (_, end), (start, _) in zip(ends, ends[1:]):
+                    self.assertLessEqual(end, start + 1e-9)
+            self.assertEqual(len(ends), 4)
+
+    def test_bodies_of_polyhedra_only(self) -> None:
+        for corners, kind in ((4, "tetrahedron"), (8, "hexahedron")):
+            points = 0.04 * np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0],
+                                      [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+            mesh = incise.Mesh(points if corners == 8 else points[[0, 1, 3, 4]], {kind: [list(range(corners))]}, regions={kind: [3]})
+            body = support.world(mesh=mesh, constraints=[])
+            for cut in (mesh, body):
+                self.assertEqual(cut.cells.tolist(), [list(range(corners))])
+            support.cut_through(body, 0.012)
+            mesh = incise.cut(mesh, planes=[([0.012, 0, 0], [1, 0, 0])]).mesh
+            for cut in (mesh, body):
+                self.assertEqual((cut.num_cells, len(faces_of(cut.cells))), (2, 2))
+                self.assertEqual({k: v.tolist() for k, v in cut.regions.items()},
+                                 {"polyhedron": [3, 3]})
+            self.assertEqual(body.stress["polyhedron"].shape, (2, 3, 3))
+            self.assertEqual(body.volume_ratio["polyhedron"].shape, (2,))
+            self.assertEqual(set(in_a_row(body.physics.fragments)), {0, 1})
 
     def test_stress_and_volume_ratio_are_those_of_the_strain(self) -> None:
         """Of a block that is drawn out, against the law in each tetrahedron."""
