@@ -19,7 +19,6 @@ import incise
 from incise import envs
 from incise import _renderer as renderer
 from incise.envs import dissection, line
-from incise.envs.base import part_labels
 from incise.envs.check import roll, same
 
 SOURCES = pathlib.Path(os.environ.get("INCISE_SOURCE_DIR",
@@ -336,13 +335,6 @@ class Parts(unittest.TestCase):
             np.testing.assert_allclose(matrix @ matrix.T, np.eye(3), atol=1e-12)
             pose = incise.Pose(position, quaternion)
             np.testing.assert_allclose(pose.to_world(np.eye(3)) - position, matrix.T, atol=1e-12)
-
-    def test_parts_of_two_boxes(self) -> None:
-        cells = np.array([[0, 1, 2, 3], [2, 3, 4, 5], [6, 7, 8, 9]])
-        labels = part_labels(cells, 10)
-        self.assertEqual(len(set(labels[:6])), 1)
-        self.assertEqual(len(set(labels[6:])), 1)
-        self.assertNotEqual(labels[0], labels[6])
 
     def test_distances_and_polygons(self) -> None:
         points = np.array([[0.5, 1.0], [-3.0, 4.0], [2.0, 0.5]])

@@ -23,24 +23,6 @@ LEAST_STEP = 1e-3
 LEAST_SHARE = 0.1
 
 
-def part_labels(cells: npt.NDArray[np.int64], num_nodes: int) -> npt.NDArray[np.int64]:
-    """Return for each node the lowest node that elements connect it with. Shape (N,).
-
-    cells: shape (M, 4), rows of nodes.
-    """
-    labels = np.arange(num_nodes)
-    flat = cells.ravel()
-    while True:
-        lowest = np.repeat(labels[cells].min(axis=1), cells.shape[1])
-        lower = labels.copy()
-        np.minimum.at(lower, flat, lowest)
-        # A label names a node, so the label of that node is one of the same part.
-        lower = lower[lower]
-        if np.array_equal(lower, labels):
-            return labels
-        labels = lower
-
-
 class World:
     """A world that is ready for episodes, with the state that each of them begins from."""
 
@@ -351,12 +333,3 @@ def strained(stable_step: float) -> str:
 def image_space(shape: tuple[int, int]) -> Any:
     """Return the space of pictures: uint8, shape (height, width, 3)."""
     return gym.Box(0, 255, (*shape, 3), np.uint8)
-
-
-def masses_of(cells: npt.NDArray[np.int64], points: Floats, density: float) -> Floats:
-    """Return the mass of each tetrahedron, kg. cells: shape (M, 4); points: at rest, m."""
-    a, b, c, d = (points[cells[:, i]] for i in range(4))
-    volumes: Floats = np.abs(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a)) / 6.0
-    return density * volumes
-
-

@@ -18,7 +18,7 @@ import incise
 
 from .. import _renderer as renderer
 from . import gym, options as checks
-from .base import CuttingEnv, Floats, World, image_space, masses_of, part_labels, strained
+from .base import CuttingEnv, Floats, World, image_space, strained
 
 MM = 0.001
 TISSUE, CONNECTIVE = 1, 2
@@ -319,17 +319,17 @@ class DissectionEnv(CuttingEnv):
             self._ready.extra["shaft"].place(incise.Pose(self._position, self._quaternion))
         self._retraction = list(FORCE_START)
         rest = self.world.rest_positions
-        cells, regions = np.asarray(self.world.cells), np.asarray(self.world.regions)
-        mass = masses_of(cells, rest, self.density)
-        self._mass = [float(mass[regions == region].sum()) for region in (TISSUE, CONNECTIVE)]
+        self._first = self.world.elements
+        regions = self._first.regions
+        self._volume = [float(self._first.volumes[regions == region].sum())
+                        for region in (TISSUE, CONNECTIVE)]
         self._count = [0, 0]
         self._num_left = None
-        self._known = (rest[cells].mean(axis=1), mass, regions)
         self._full_area = WIDTH * LENGTH * self.rows_to_cut / NUM_ROWS
         self._total_connective = int((regions == CONNECTIVE).sum())
         self._total_tissue = int((regions == TISSUE).sum())
         self._flags = [0.0, 0.0, 0.0]
-        self._look_at_mesh(rest, cells, regions)
+        self._look_at_mesh(rest, regions)
         self._positions = self.world.positions
         self._find_border()
         self._features = dict.fromkeys(self.default_amounts, 0.0)
@@ -404,9 +404,9 @@ class DissectionEnv(CuttingEnv):
         x, y, z = (1000.0 * (p[i] + WIRE[0] * r[i][1] + TIP_LENGTH * r[i][2]) for i in range(3))
         return x, y, z
 
-    def _look_at_mesh(self, rest: Floats, cells: npt.NDArray[np.int64],
-                      regions: npt.NDArray[np.int64]) -> None:
+    def _look_at_mesh(self, rest: Floats, regions: npt.NDArray[np.int64]) -> None:
         """Choose the points to watch."""
+        cells = np.asarray(self.world.cells)  # the cauter divides none: all are tetrahedra
         self._tissue_nodes = np.unique(cells[regions == TISSUE])
         self._connective_nodes = np.unique(cells[regions == CONNECTIVE])
         self._is_tissue_node = np.zeros(len(rest), bool)
@@ -437,33 +437,31 @@ class DissectionEnv(CuttingEnv):
     def _on_edit(self, report: incise.StepReport) -> None:
         world = self.world
         rest = world.rest_positions
-        cells, regions = np.asarray(world.cells), np.asarray(world.regions)
-        mass = masses_of(cells, rest, self.density)
-        left = float(mass[regions == CONNECTIVE].sum())
-        self._area = self._full_area * (1.0 - left / self._mass[1])
-        gone = self._gone(rest[cells].mean(axis=1))
+        elements = world.elements
+        volumes, regions = elements.volumes, elements.regions
+        left = float(volumes[regions == CONNECTIVE].sum())
+        self._area = self._full_area * (1.0 - left / self._volume[1])
+        gone = self._gone(elements.centres)
         if gone.any():
-            middle, masses, _ = self._known
-            away = middle[gone, 2] - self.gap
-            self._mean_distance = float((away * masses[gone]).sum() / masses[gone].sum())
+            away = self._first.centres[gone, 2] - self.gap
+            weights = self._first.volumes[gone]
+            self._mean_distance = float((away * weights).sum() / weights.sum())
             self._max_distance = float(away.max())
         tissue = regions == TISSUE
-        lost = 1.0 - float(mass[tissue].sum()) / self._mass[0]
-        labels = part_labels(cells, len(rest))
+        lost = 1.0 - float(volumes[tissue].sum()) / self._volume[0]
         held = (rest[:, 2] <= 1e-9) | ((rest[:, 2] <= self.gap + 1e-9) & (
             rest[:, 1] < (NUM_ROWS - NUM_FREE_ROWS - self.rows_to_cut) * LENGTH / NUM_ROWS - 1e-6))
-        is_off = ~np.isin(labels[cells[:, 0]], labels[held])
-        self._lost = max(0.0, lost) + float(mass[tissue & is_off].sum()) / self._mass[0]
-        self._look_at_mesh(rest, cells, regions)
+        is_off = ~np.isin(elements.components, world.components[held])
+        self._lost = max(0.0, lost) + float(volumes[tissue & is_off].sum()) / self._volume[0]
+        self._look_at_mesh(rest, regions)
         self._num_left = (int((regions == CONNECTIVE).sum()), int(tissue.sum()))
 
     def _gone(self, middle: Floats) -> npt.NDArray[np.bool_]:
         """Return which of the first elements are tissue that has been removed."""
-        first, _, regions = self._known
         there = {tuple(p) for p in np.rint(middle * 1e7).astype(np.int64).tolist()}
-        known = np.rint(first * 1e7).astype(np.int64).tolist()
-        gone: npt.NDArray[np.bool_] = np.array([tuple(p) not in there for p in known])
-        gone &= regions == TISSUE
+        first = np.rint(self._first.centres * 1e7).astype(np.int64).tolist()
+        gone: npt.NDArray[np.bool_] = np.array([tuple(p) not in there for p in first])
+        gone &= self._first.regions == TISSUE
         return gone
 
     def _judge(self) -> tuple[float, bool]:

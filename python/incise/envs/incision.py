@@ -12,7 +12,7 @@ import incise
 
 from .. import _renderer as renderer
 from . import gym, line, options as checks
-from .base import CuttingEnv, Floats, World, image_space, masses_of, part_labels
+from .base import CuttingEnv, Floats, World, image_space
 from .target import Target
 
 TIP_TO_HANDLE = 0.03  # m, length of the blade in pictures
@@ -254,17 +254,16 @@ class LineEnv(CuttingEnv):
 
     def _on_parts(self, rest: Floats) -> None:
         """Measure what has come off the held part."""
-        cells = np.asarray(self.world.cells)
-        labels = part_labels(cells, len(rest))
-        is_off = ~np.isin(labels[cells[:, 0]], labels[self._held(rest)])
-        mass = masses_of(cells, rest, self.density)
-        self._weigh(rest[cells].mean(axis=1), mass, is_off)
+        elements = self.world.elements
+        held = self.world.components[self._held(rest)]
+        self._weigh(elements.centres, elements.volumes, ~np.isin(elements.components, held))
 
     def _held(self, rest: Floats) -> npt.NDArray[np.bool_]:
         raise NotImplementedError
 
-    def _weigh(self, middle: Floats, mass: Floats, is_off: npt.NDArray[np.bool_]) -> None:
-        self._lost = float(mass[is_off].sum() / mass.sum())
+    def _weigh(self, middle: Floats, volume: Floats, is_off: npt.NDArray[np.bool_]) -> None:
+        """Measure what has come off, from the middle of each element, its volume, and if it has."""
+        self._lost = float(volume[is_off].sum() / volume.sum())
 
     def _task_info(self) -> dict[str, Any]:
         return {"coverage": self._target.coverage,

@@ -146,11 +146,11 @@ class WedgeResectionEnv(LineEnv):
     def _held(self, rest: Floats) -> npt.NDArray[np.bool_]:
         return rest[:, 1] >= (1 - 1e-6) * self.size[1]
 
-    def _weigh(self, middle: Floats, mass: Floats, is_off: npt.NDArray[np.bool_]) -> None:
+    def _weigh(self, middle: Floats, volume: Floats, is_off: npt.NDArray[np.bool_]) -> None:
         is_wedge = line.is_inside(middle[:, :2], self._line)
-        wedge, rest = mass[is_wedge].sum(), mass[~is_wedge].sum()
-        self._removed = float(mass[is_wedge & is_off].sum() / max(wedge, 1e-30))
-        self._lost = float(mass[~is_wedge & is_off].sum() / max(rest, 1e-30))
+        wedge, rest = volume[is_wedge].sum(), volume[~is_wedge].sum()
+        self._removed = float(volume[is_wedge & is_off].sum() / max(wedge, 1e-30))
+        self._lost = float(volume[~is_wedge & is_off].sum() / max(rest, 1e-30))
 
     def _state(self) -> npt.NDArray[np.float32]:
         x, y = self._tip[0], self._tip[1]
