@@ -244,8 +244,7 @@ surfaces: list of files (STL, PLY, OFF, OBJ) or of pairs (points (P, 3), triangl
 sweeps: list of arrays (P, K, 3): the K points of a blade's edge in P poses, moved straight between.
 remove_spheres, remove_boxes, remove_capsules: lists of (centre, radius), (low corner, high corner)
     and (from, to, radius): remove the elements whose centres they cover.
-mode: 'split' divides elements, 'separate' opens the faces between them. None: 'split' if all
-    elements are tetrahedra.
+mode: 'split' divides elements, 'separate' opens the faces between them. None: 'split'.
 snap: points of edges nearer than this part of the edge to a node are taken as on it, 0 to 0.5.
 
 Tools act in this order, all lengths in the unit of the mesh. Raises InputError for tools that
