@@ -233,7 +233,8 @@ class Arrays(unittest.TestCase):
         for corners, kind in ((4, "tetrahedron"), (8, "hexahedron")):
             points = 0.04 * np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0],
                                       [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
-            mesh = incise.Mesh(points if corners == 8 else points[[0, 1, 3, 4]], {kind: [list(range(corners))]}, regions={kind: [3]})
+            mesh = incise.Mesh(points if corners == 8 else points[[0, 1, 3, 4]],
+                               {kind: [list(range(corners))]}, regions={kind: [3]})
             body = support.world(mesh=mesh, constraints=[])
             for cut in (mesh, body):
                 self.assertEqual(cut.cells.tolist(), [list(range(corners))])
