@@ -94,10 +94,10 @@ TEST(CutComplexes, AreTheSameBodiesAfterRandomPrograms) {
                 const RandomCut cut = random_cut(corners, random);
                 SCOPED_TRACE("cut " + std::to_string(i) + ": " + cut.description);
                 LoopFront front;
-                for (const auto& surface : cut.stroke) {
+                for (const StrokePart& part : cut.stroke) {
                     const auto rest = mesh.rest_positions();
                     const Split done =
-                        split_cells(mesh, {mesh, rest, rest}, *surface, front, {}, {});
+                        split_cells(mesh, {mesh, rest, rest}, *part.surface, front, {}, {});
                     fragments.apply(mesh, done.changes);
                 }
                 const MeshData data = fragments::written(mesh, fragments);
