@@ -126,14 +126,27 @@ void Cutter::settle(const Mesh& mesh) {
     if (!has_cut_in_progress()) opened_.settle(mesh, std::numeric_limits<std::size_t>::max());
 }
 
+/// True if the tissue is not where it was after the last motion.
+/// @param num_known  the number of nodes that it had
+/// @pre  `now_` has the nodes where they are, `before_` where they counted as lying
+bool Cutter::is_other_than_before(std::size_t num_known) const {
+    constexpr double rounding = 1e-9;  // of the size of cells
+    const double least = rounding * opened_.usual();
+    for (std::size_t i = 0; i < num_known; ++i) {
+        const Vec3 way = now_.values()[i] - before_.values()[i];
+        if (way.squaredNorm() <= least * least) continue;
+        const auto offset = opened_.offset_of(VertexId(i));
+        if (offset && (way + *offset).squaredNorm() > least * least) return true;
+    }
+    return false;
+}
+
 void Cutter::follow_motion(const Mesh& mesh, std::span<const Vec3> positions) {
     std::swap(before_, now_);
     const std::size_t num_known = std::min(num_followed_, positions.size());
     num_followed_ = positions.size();
     now_.assign(positions);
-    opened_.move_as_before(now_);
-    has_moved_ =
-        !std::ranges::equal(now_.values().first(num_known), before_.values().first(num_known));
+    has_moved_ = is_other_than_before(num_known);
     constexpr std::size_t most_at_a_time = 500;  // a step takes no longer than one that cuts
     if (!has_cut_in_progress()) opened_.settle(mesh, most_at_a_time);
     opened_.move_all(positions, now_);
@@ -230,7 +243,8 @@ std::vector<SuspendedLoops> Cutter::unfinished_cuts() {
 /// moves, a cut comes near to the same nodes on one side and then on the other. With a smaller
 /// tolerance it would leave thin cells between the nodes and itself, and cut them off later.
 double Cutter::tolerance(double snap) const {
-    return std::max(snap, has_moved_ ? default_snap : smallest_snap);
+    constexpr double largest = 0.1;
+    return std::clamp(snap, has_moved_ ? default_snap : least_tolerance, largest);
 }
 
 Split Cutter::noted(Split done, std::optional<std::size_t> worker, double snap) {

@@ -131,7 +131,7 @@ class Cutter {
     /// Archives everything except where the present motion began.
     static void archive(auto& ar, auto& self) {
         ar(self.has_loops_, self.shift_, self.cuts_, self.boxes_, self.snap_history_, self.now_,
-           self.opened_, self.known_, self.unfinished_, self.num_followed_);
+           self.opened_, self.known_, self.unfinished_, self.num_followed_, self.has_moved_);
     }
 
   private:
@@ -169,6 +169,7 @@ class Cutter {
         boxes_.refresh(mesh, now_.values());
         return {mesh, before_.values(), now_.values(), &boxes_, !has_moved_};
     }
+    bool is_other_than_before(std::size_t num_known) const;
     double tolerance(double snap) const;
     Split noted(Split done, std::optional<std::size_t> worker, double snap = default_snap);
     std::vector<SuspendedLoops> unfinished_cuts();

@@ -130,7 +130,8 @@ bool LoopStep::lies_on_surface(FaceId f) const {
 /// Returns the faces of a cell on that side of a closed path on which there is almost nothing
 /// between them and a face along the path; none if both sides have a volume.
 std::vector<FaceId> LoopStep::faces_within(CellId e, std::span<const VertexId> path) const {
-    const double flat = (2.0 / 3.0) * nearness_of_nodes_;  // thickness, as a share of the width
+    // Thickness, as a share of the width.
+    const double flat = (2.0 / 3.0) * std::min(nearness_of_nodes_, 0.5 * default_snap);
     const Vec3& origin = mesh_.rest_position(path[0]);
     Vec3 area = Vec3::Zero();
     for (std::size_t i = 2; i < path.size(); ++i)
@@ -138,11 +139,10 @@ std::vector<FaceId> LoopStep::faces_within(CellId e, std::span<const VertexId> p
                           .cross(mesh_.rest_position(path[i]) - origin);
     std::vector<FaceId> found;
     double least = flat * std::pow(area.norm(), 1.5);
+    bool found_lies_on = false;  // on a surface at once: then the thickness is nothing
     for (const bool is_left : {true, false}) {
         std::vector<FaceId> faces = faces_beside(e, path, is_left);
         if (faces.size() == 1) return faces;
-        if (!is_swept_ && std::ranges::all_of(faces, [&](FaceId f) { return lies_on_surface(f); }))
-            return faces;
         double volume = 0.0;
         for (const FaceId f : faces)
             for (int p = 2; p < mesh_.face_size(f); ++p) {
@@ -151,8 +151,12 @@ std::vector<FaceId> LoopStep::faces_within(CellId e, std::span<const VertexId> p
                 };
                 volume += at(0).cross(at(p - 1)).dot(at(p)) / 6.0;
             }
-        if (std::abs(volume) >= least) continue;
+        const bool lies_on =
+            !is_swept_ && std::ranges::all_of(faces, [&](FaceId f) { return lies_on_surface(f); });
+        if (lies_on < found_lies_on || (lies_on == found_lies_on && std::abs(volume) >= least))
+            continue;
         least = std::abs(volume);
+        found_lies_on = lies_on;
         found = std::move(faces);
     }
     return found;

@@ -33,7 +33,7 @@ class LoopStep {
           tissue_(tissue),
           surface_(surface),
           front_(front),
-          nearness_of_nodes_(0.5 * std::max(options.snap, smallest_snap)),
+          nearness_of_nodes_(0.5 * std::max(options.snap, least_tolerance)),
           resting_(resting.begin(), resting.end()),
           only_(std::move(only)),
           earlier_(earlier),

@@ -96,12 +96,11 @@ Near near_to(const Mesh& mesh, VertexId n, double distance) {
     return near;
 }
 
-/// Returns the tolerance of a cut at a node, m. A cut leaves cells beside nodes of the mesh that
-/// are much smaller than the edges on which their nodes were made: so cells count that are joined
-/// to those at the node, up to the first of a usual size.
+/// Returns the size of cells at a node, m, of which the tolerance of a cut is a share. A cut leaves
+/// cells beside nodes of the mesh that are much smaller than the edges on which their nodes were
+/// made: so cells count that are joined to those at the node, up to the first of a usual size.
 /// @param usual  the size of cells, m
-/// @param snap   tolerance of the cut
-double margin_of(const Mesh& mesh, VertexId n, double usual, double snap) {
+double size_at(const Mesh& mesh, VertexId n, double usual) {
     constexpr std::size_t most_cells = 64;
     std::vector<CellId> cells;
     mesh.star(n, cells);
@@ -125,22 +124,51 @@ double margin_of(const Mesh& mesh, VertexId n, double usual, double snap) {
             }
         if (cells.size() == end) break;
     }
-    return std::max(snap, smallest_snap) * longest;
+    return longest;
 }
 
 }  // namespace
 
+/// Notes that a cut with a tolerance has opened faces at a node. Of several, the largest holds.
+void OpenedNodes::note_snap(VertexId n, double snap) {
+    const auto [it, is_new] = snaps_.try_emplace(n, snap);
+    if (!is_new) it->second = std::max(it->second, snap);
+    if (it->second == default_snap) snaps_.erase(it);
+}
+
+/// Notes that a node is to be moved no more.
+void OpenedNodes::forget(VertexId n, const Node& node) {
+    if (node.offset.isZero(0.0)) return;
+    const auto at = std::ranges::lower_bound(forgotten_, n);
+    if (at == forgotten_.end() || *at != n) forgotten_.insert(at, n);
+}
+
 void OpenedNodes::apply(const Mesh& mesh, const ChangeSet& changes, double snap) {
-    for (const topology::VertexRecord& record : changes.nodes_removed) nodes_.erase(record.id);
-    for (const topology::VertexRecord& record : changes.nodes_added)  // sources first
-        if (record.num_sources == 1)
-            if (const auto source = nodes_.find(record.sources[0].node); source != nodes_.end())
-                nodes_[record.id].snap = source->second.snap;
-    std::vector<VertexId> touched;
+    for (const topology::VertexRecord& record : changes.nodes_removed) {
+        nodes_.erase(record.id);
+        snaps_.erase(record.id);
+    }
+    std::vector<VertexId> touched, opened;
     for (const CellId e : topology::touched_cells(changes))
         if (e.index() < mesh.element_capacity() && mesh.is_alive(e))
             std::ranges::copy(mesh.corners(e), std::back_inserter(touched));
-    find_at(mesh, std::move(touched), snap);
+    for (const topology::VertexRecord& record : changes.nodes_added)  // sources first
+        if (record.num_sources == 1)
+            if (const auto known = snaps_.find(record.sources[0].node); known != snaps_.end())
+                snaps_.emplace(record.id, double(known->second));
+    for (const topology::FacePair& pair : changes.faces_opened)
+        for (const FaceId f : {pair.a, pair.b})
+            if (mesh.is_alive(f.cell) && mesh.is_on_cut(f))
+                for (int p = 0; p < mesh.face_size(f); ++p)
+                    opened.push_back(mesh.face_corner(f, p));
+    std::ranges::sort(opened);
+    opened.erase(std::unique(opened.begin(), opened.end()), opened.end());
+    for (const VertexId n : opened) {
+        // One that had opened faces before, by a cut with the default, is not in the list.
+        const bool has_default = nodes_.contains(n) && !snaps_.contains(n);
+        note_snap(n, has_default ? std::max(snap, default_snap) : snap);
+    }
+    find_at(mesh, std::move(touched));
 }
 
 void OpenedNodes::find_all(const Mesh& mesh, double usual) {
@@ -152,13 +180,12 @@ void OpenedNodes::find_all(const Mesh& mesh, double usual) {
                 std::ranges::copy(mesh.corners(e), std::back_inserter(nodes));
                 break;
             }
-    find_at(mesh, std::move(nodes), default_snap);
+    find_at(mesh, std::move(nodes));
     settle(mesh, std::numeric_limits<std::size_t>::max());
 }
 
 /// Finds the opened faces at each of some nodes.
-/// @param snap  tolerance of the cut that has opened those at nodes that had none before
-void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes, double snap) {
+void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes) {
     std::ranges::sort(nodes);
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     if (unsettled_.size() > 2 * nodes_.size() + 1000) {  // while a blade rests in the body
@@ -168,9 +195,7 @@ void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes, double 
     std::vector<CellId> star;
     for (const VertexId n : nodes) {
         Node node, former;
-        node.snap = snap;
         if (const auto before = nodes_.find(n); before != nodes_.end()) {
-            node.snap = before->second.snap;
             node.is_moved = before->second.is_moved;
             node.offset = before->second.offset;
             former = std::move(before->second);
@@ -214,23 +239,14 @@ void OpenedNodes::find_at(const Mesh& mesh, std::vector<VertexId> nodes, double 
             if (is_beside && area == 0.0 && !former.planes.empty() &&
                 std::ranges::all_of(former.planes, is_left))
                 nodes_[n] = std::move(former);
+            else
+                forget(n, node);
             continue;
         }
         std::ranges::sort(node.around);  // so that sums do not depend on the order of the cells
-        node.margin = margin_of(mesh, n, usual_, node.snap);
+        node.margin = std::max(snap_of(n), least_tolerance) * size_at(mesh, n, usual_);
         nodes_[n] = std::move(node);
     }
-}
-
-/// Returns the tolerance of the cut that has opened faces at a node, or beside it.
-double OpenedNodes::snap_at(const Mesh& mesh, VertexId n) const {
-    if (const auto node = nodes_.find(n); node != nodes_.end()) return node->second.snap;
-    double snap = -1.0;
-    for (const VertexId other :
-         near_to(mesh, n, 2.0 * margin_of(mesh, n, usual_, default_snap)).nodes)
-        if (const auto node = nodes_.find(other); node != nodes_.end())
-            snap = std::max(snap, node->second.snap);
-    return snap >= 0.0 ? snap : default_snap;
 }
 
 void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
@@ -246,35 +262,42 @@ void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
     // What a node sees reaches as far as the cells joined to those at nodes near it.
     std::unordered_set<CellId> seen;
     std::vector<VertexId> more;
-    for (const VertexId n : chosen) {
-        const double snap = std::max(snap_at(mesh, n), default_snap);
-        const double reach = std::max(margin_of(mesh, n, usual_, snap), snap * usual_);
-        for (const CellId e : near_to(mesh, n, 2.0 * reach).cells)
+    double largest = default_snap;
+    for (const auto& entry : snaps_) largest = std::max(largest, entry.second);
+    for (const VertexId n : chosen)
+        for (const CellId e :
+             near_to(mesh, n, 2.0 * largest * std::max(size_at(mesh, n, usual_), usual_)).cells)
             if (seen.insert(e).second)
                 std::ranges::copy_if(mesh.corners(e), std::back_inserter(more),
                                      [&](VertexId other) { return nodes_.contains(other); });
-    }
     chosen.insert(chosen.end(), more.begin(), more.end());
     std::ranges::sort(chosen);
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     std::unordered_map<CellId, std::vector<Face>> faces_of;
     for (const VertexId n : chosen) {
         Node node;
-        node.snap = snap_at(mesh, n);
         if (const auto before = nodes_.find(n); before != nodes_.end()) {
             node = std::move(before->second);
             nodes_.erase(before);
         }
-        node.margin = margin_of(mesh, n, usual_, node.snap);
+        const double size = size_at(mesh, n, usual_);
+        node.margin = std::max(snap_of(n), least_tolerance) * size;
         node.is_moved = false;
         std::vector<Face> faces;
-        for (const CellId e : near_to(mesh, n, 2.0 * node.margin).cells) {
+        double snap = 0.0;
+        for (const CellId e : near_to(mesh, n, 2.0 * largest * size).cells) {
             const auto [it, is_new] = faces_of.try_emplace(e);
             if (is_new) append_opened_faces(mesh, e, it->second);
-            for (const Face& face : it->second)
-                if (is_within(mesh, face, mesh.rest_position(n), 2.0 * node.margin))
-                    faces.push_back(face);
+            for (const Face& face : it->second) {
+                double of_face = least_tolerance;
+                for (const VertexId corner : face.corners)
+                    of_face = std::max(of_face, snap_of(corner));
+                if (!is_within(mesh, face, mesh.rest_position(n), 2.0 * of_face * size)) continue;
+                faces.push_back(face);
+                snap = std::max(snap, of_face);
+            }
         }
+        if (!faces.empty()) node.margin = snap * size;
         // In an order that does not depend on that of the cells at a node, which a file forgets.
         std::ranges::sort(faces, [](const Face& a, const Face& b) {
             return a.width != b.width ? a.width > b.width : a.corners < b.corners;
@@ -295,7 +318,10 @@ void OpenedNodes::settle(const Mesh& mesh, std::size_t most) {
             }
             node.planes.push_back(face.corners);
         }
-        if (!node.planes.empty() || !node.around.empty()) nodes_[n] = std::move(node);
+        if (!node.planes.empty() || !node.around.empty())
+            nodes_[n] = std::move(node);
+        else
+            forget(n, node);
     }
 }
 
@@ -326,6 +352,7 @@ void OpenedNodes::move(VertexId n, Node& node, std::span<const Vec3> positions, 
 
 void OpenedNodes::move_all(std::span<const Vec3> positions, Positions& seen) {
     for (auto& [n, node] : nodes_) move(n, node, positions, seen);
+    forgotten_.clear();
 }
 
 double OpenedNodes::move_new(Positions& seen) {
@@ -348,6 +375,7 @@ bool OpenedNodes::has_new() const {
 bool OpenedNodes::is_on(const Mesh& mesh) const {
     const auto is_there = [&](VertexId n) { return n.index() < mesh.node_capacity(); };
     return std::ranges::all_of(unsettled_, is_there) &&
+           std::ranges::all_of(snaps_, [&](const auto& entry) { return is_there(entry.first); }) &&
            std::ranges::all_of(nodes_, [&](const auto& entry) {
                const Node& node = entry.second;
                return is_there(entry.first) && node.planes.size() <= max_planes &&

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -45,9 +47,12 @@ class OpenedNodes {
     /// Cost: some ten microseconds a node.
     void settle(const topology::Mesh& mesh, std::size_t most);
 
-    /// Moves all nodes in `seen`, by vertex id, by as much as at the last time.
-    void move_as_before(Positions& seen) const {
-        for (const auto& [n, node] : nodes_) seen[n] += node.offset;
+    /// Returns by how much a node is moved, m; nothing if it was moved at the last time, and is to
+    /// be moved no more.
+    std::optional<Vec3> offset_of(VertexId n) const {
+        if (const auto node = nodes_.find(n); node != nodes_.end()) return node->second.offset;
+        if (std::ranges::binary_search(forgotten_, n)) return std::nullopt;
+        return Vec3::Zero();
     }
     /// Moves all nodes in `seen`, by vertex id.
     /// @param positions  where the nodes are, m
@@ -62,30 +67,38 @@ class OpenedNodes {
 
     /// True if the mesh has all nodes that it names.
     bool is_on(const topology::Mesh& mesh) const;
-    static void archive(auto& ar, auto& self) { ar(self.usual_, self.nodes_, self.unsettled_); }
+    static void archive(auto& ar, auto& self) {
+        ar(self.usual_, self.nodes_, self.unsettled_, self.forgotten_, self.snaps_);
+    }
 
   private:
     /// Corners of an opened face, anticlockwise as seen from outside.
     using Plane = std::array<VertexId, 3>;
     struct Node {
-        double snap = default_snap;  // of the cut that has opened its faces
         double margin = 0.0;         // m
         Vec3 offset = Vec3::Zero();  // by which it is moved in the present positions, m
         bool is_moved = false;       // true if by as much as it should be
         std::vector<std::pair<VertexId, VertexId>> around;  // its neighbours round the faces
         std::vector<Plane> planes;                          // of a node that is settled
         static void archive(auto& ar, auto& self) {
-            ar(self.snap, self.margin, self.offset, self.is_moved, self.around, self.planes);
+            ar(self.margin, self.offset, self.is_moved, self.around, self.planes);
         }
     };
 
-    void find_at(const topology::Mesh& mesh, std::vector<VertexId> nodes, double snap);
-    double snap_at(const topology::Mesh& mesh, VertexId n) const;
+    void find_at(const topology::Mesh& mesh, std::vector<VertexId> nodes);
+    double snap_of(VertexId n) const {
+        const auto snap = snaps_.find(n);
+        return snap != snaps_.end() ? snap->second : default_snap;
+    }
+    void note_snap(VertexId n, double snap);
+    void forget(VertexId n, const Node& node);
     static void move(VertexId n, Node& node, std::span<const Vec3> positions, Positions& seen);
 
     double usual_ = 0.0;  // size of cells, m
     std::unordered_map<VertexId, Node> nodes_;
     std::vector<VertexId> unsettled_;  // on or beside opened faces
+    std::vector<VertexId> forgotten_;  // that were moved at the last time, in ascending order
+    std::unordered_map<VertexId, double> snaps_;  // of nodes on opened faces, unless the default
 };
 
 }  // namespace incise::cutting

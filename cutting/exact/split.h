@@ -11,9 +11,9 @@ namespace incise::cutting {
 /// The default of `snap`. The longest edges of a mesh are about twice as long as the mean, so that
 /// nodes of the cut are off the surface by at most 0.03 of a mean edge.
 inline constexpr double default_snap = 0.015;
-/// The least tolerance that a cut has: ten times the distance by which blades are moved aside so
-/// that none is exactly on a node (Cutter), and more than rounding.
-inline constexpr double smallest_snap = 2e-6;
+/// The least tolerance of a cut through cells of any shape: some ten times the distance by which
+/// blades are moved aside so that none is exactly on a node (Cutter), and more than rounding.
+inline constexpr double least_tolerance = 2e-6;
 
 /// The options of a cut.
 struct SplitOptions {

@@ -20,7 +20,8 @@ struct TissueMotion {
     std::span<const Vec3> before, after;
     /// Boxes for the search of elements; if null, a search visits all elements.
     const topology::ElementBoxes* boxes = nullptr;
-    /// True if the tissue does not move, though some nodes may count as elsewhere than before.
+    /// True if no node of the body moves in the step, to rounding, though some may count as
+    /// elsewhere than before.
     bool is_at_rest = false;
 
     /// Calls visit(element) in ascending order for living elements. Visits those for which
