@@ -188,7 +188,8 @@ class Arrays(unittest.TestCase):
                 support.cut_through(body, cut_at)
                 elements, rest = body.elements, body.rest_positions
                 self.assertEqual(elements.version, body.topology_version)
-                self.assertEqual("polyhedron" in body.cells, cut_at < 0.12)
+                self.assertEqual(isinstance(body.cells, dict) and "polyhedron" in body.cells,
+                                 name not in ("tetrahedra", "a long way off"))
                 np.testing.assert_array_equal(elements.regions, in_a_row(body.regions))
                 self.assertEqual(len(elements.regions), body.num_cells)
                 for faces, centre, volume in zip(faces_of(body.cells), elements.centres,
@@ -230,10 +231,10 @@ class Arrays(unittest.TestCase):
             self.assertEqual(len(ends), 4)
 
     def test_bodies_of_polyhedra_only(self) -> None:
-        for corners, kind in ((4, "tetrahedron"), (8, "hexahedron")):
+        for corners, kind in ((5, "pyramid"), (8, "hexahedron")):
             points = 0.04 * np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0],
                                       [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
-            mesh = incise.Mesh(points if corners == 8 else points[[0, 1, 3, 4]],
+            mesh = incise.Mesh(points[:corners],
                                {kind: [list(range(corners))]}, regions={kind: [3]})
             body = support.world(mesh=mesh, constraints=[])
             for cut in (mesh, body):
