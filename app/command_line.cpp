@@ -221,7 +221,7 @@ constexpr const char* cut_footer =
     "between; all poses have the same number of points. From pose to pose each segment of the\n"
     "edge sweeps two triangles: give more poses where it twists.\n"
     "\n"
-    "Mode split divides tetrahedra along the cut, within the tolerance --snap of it. The mesh\n"
+    "Mode split divides elements along the cut, within the tolerance --snap of it. The mesh\n"
     "has thin parts then, which do not shorten the steps of a run. Mode separate divides nothing:\n"
     "it opens existing faces next to the cut, those between elements whose centres it parts, so\n"
     "the cut follows the faces of the mesh.\n"

@@ -286,7 +286,7 @@ Split Cutter::end_cut(CutId id, Mesh& mesh, const fragments::FragmentMesh& fragm
                       const BladeEnd& blade) {
     Cut& cut = cut_of(id);
     TissueMotion tissue = motion(mesh);
-    tissue.before = tissue.after;  // it rests
+    tissue.before = tissue.after;  // it rests, but the blade has come as in the motion
     if (has_loops_) {
         auto resting = suspended_cuts(id.index, &Cut::loops);
         auto unfinished = unfinished_cuts();

@@ -78,7 +78,9 @@ class Cutter {
                                                  std::span<const Vec3> positions, const Vec3& x,
                                                  double moved);
 
-    /// Begins a cut of a blade. Calls of split() continue the cut. For `snap`, see SplitOptions.
+    /// Begins a cut of a blade. Calls of split() continue the cut. For `snap`, see SplitOptions. In
+    /// a body with other cells than tetrahedra it is taken as from 2e-6 to 0.1 while no node moves,
+    /// and else as from the default to 0.1.
     CutId begin_cut(double snap);
     /// Cuts along what the edge of a blade sweeps during the last motion of the tissue. Returns the
     /// edit, which may be empty.

@@ -19,7 +19,9 @@ inline constexpr double least_tolerance = 2e-6;
 struct SplitOptions {
     /// The tolerance of a cut, as a share of an edge that the surface crosses. The range is
     /// [0, 0.5]. An end of such an edge that is nearer to the surface counts as on it. No node is
-    /// moved. Without a tolerance, a cut leaves parts of any size.
+    /// moved. Without a tolerance, a cut leaves parts of any size. In a body with other cells than
+    /// tetrahedra, a node counts as on the surface if it is nearer than half of this share of the
+    /// longest edge there, at rest: see Cutter for the range.
     double snap = default_snap;
 };
 

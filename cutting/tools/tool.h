@@ -43,7 +43,7 @@ struct Blade {
     static constexpr ToolTraits traits{.kind = "blade", .cuts = true};
     std::vector<Vec3> edge;  ///< a polyline of at least two points, m
     CutMode mode = CutMode::split;
-    double snap = default_snap;  ///< for mode split, in bodies of tetrahedra: see SplitOptions
+    double snap = default_snap;  ///< for mode split: see SplitOptions
     /// Energy that it takes to open an area, J/m2; 0: not known. Areas are current ones.
     double toughness = 0.0;
     CuttingForce cutting_force = CuttingForce::report;  ///< only with a toughness

@@ -89,17 +89,9 @@ TEST(CutComplexes, AreTheSameBodiesAfterRandomPrograms) {
             Mesh mesh = Mesh::build(body).mesh;
             FragmentMesh fragments(mesh);
             for (int i = 0; i < 3; ++i) {
-                std::vector<Vec3> corners;
-                for (const VertexId n : mesh.nodes()) corners.push_back(mesh.rest_position(n));
-                const RandomCut cut = random_cut(corners, random);
+                const RandomCut cut = random_cut(mesh, random);
                 SCOPED_TRACE("cut " + std::to_string(i) + ": " + cut.description);
-                LoopFront front;
-                for (const StrokePart& part : cut.stroke) {
-                    const auto rest = mesh.rest_positions();
-                    const Split done =
-                        split_cells(mesh, {mesh, rest, rest}, *part.surface, front, {}, {});
-                    fragments.apply(mesh, done.changes);
-                }
+                cut_cells(mesh, fragments, cut);
                 const MeshData data = fragments::written(mesh, fragments);
                 const auto complex = topology::to_linear_cell_complex(mesh, data.carriers);
                 ASSERT_TRUE(complex.is_valid());

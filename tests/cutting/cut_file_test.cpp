@@ -69,17 +69,9 @@ TEST(CutFiles, KeepBodiesOfRandomPrograms) {
             Mesh mesh = Mesh::build(body.data).mesh;
             FragmentMesh fragments(mesh);
             for (int i = 0; i < 3; ++i) {
-                std::vector<Vec3> corners;
-                for (const VertexId n : mesh.nodes()) corners.push_back(mesh.rest_position(n));
-                const RandomCut cut = random_cut(corners, random);
+                const RandomCut cut = random_cut(mesh, random);
                 SCOPED_TRACE("cut " + std::to_string(i) + ": " + cut.description);
-                LoopFront front;
-                for (const StrokePart& part : cut.stroke) {
-                    const auto rest = mesh.rest_positions();
-                    const Split done =
-                        split_cells(mesh, {mesh, rest, rest}, *part.surface, front, {}, {});
-                    fragments.apply(mesh, done.changes);
-                }
+                cut_cells(mesh, fragments, cut);
                 const MeshData data = written(mesh, fragments);
                 ASSERT_EQ(topology::check(data).errors, std::vector<std::string>());
                 fragments::expect_round_trip(mesh, fragments);

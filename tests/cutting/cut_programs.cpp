@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "incise/cutting/exact/loop_splitter.h"
 #include "incise/cutting/surfaces/plane.h"
 #include "incise/cutting/surfaces/swept_edge.h"
 #include "incise/cutting/surfaces/triangle_surface.h"
@@ -120,6 +121,21 @@ RandomCut random_cut(std::span<const Vec3> positions, Random& random) {
             break;
     }
     return cut;
+}
+
+RandomCut random_cut(const topology::Mesh& mesh, Random& random) {
+    std::vector<Vec3> positions;
+    for (const VertexId n : mesh.nodes()) positions.push_back(mesh.rest_position(n));
+    return random_cut(positions, random);
+}
+
+void cut_cells(topology::Mesh& mesh, fragments::FragmentMesh& fragments, const RandomCut& cut) {
+    LoopFront front;
+    for (const StrokePart& part : cut.stroke) {
+        const auto rest = mesh.rest_positions();
+        const Split done = split_cells(mesh, {mesh, rest, rest}, *part.surface, front, {}, {});
+        fragments.apply(mesh, done.changes);
+    }
 }
 
 SmoothField::SmoothField(double strain, double size, Random& random) {

@@ -28,6 +28,12 @@ struct RandomCut {
 /// only partly.
 RandomCut random_cut(std::span<const Vec3> positions, test::Random& random);
 
+/// Cuts a body at rest by the rule for cells of any shape, whatever its cells are. A blade is left
+/// in it.
+void cut_cells(topology::Mesh& mesh, fragments::FragmentMesh& fragments, const RandomCut& cut);
+/// A cut of a body at rest.
+RandomCut random_cut(const topology::Mesh& mesh, test::Random& random);
+
 /// A smooth motion of all of space: a strain and some waves. Displacement at X (m).
 class SmoothField {
   public:

@@ -14,6 +14,11 @@
 
 namespace incise::test {
 
+/// True if a fragment has less or more material than its cell.
+inline bool is_divided(const fragments::FragmentMesh& fragments, ElementId e) {
+    return !fragments.part_shares(e).empty() || fragments.volume_share(e) != 1.0;
+}
+
 /// By cell, the cells of its fragment, and its share; and which corners of fragments are the same
 /// node.
 struct FragmentShape {
